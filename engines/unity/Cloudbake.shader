@@ -1,5 +1,5 @@
-// cloudbake @version@: a mesh cloud in Unity, lit by the main light, by lamps and the sky through its lobes, without passes after it: in the
-// Universal Render Pipeline and in the built-in one. The lobes must be in the mesh's UV sets @first_set@ and @second_set@.
+// cloudbake @version@: a mesh cloud in Unity, lit by the main light, by lamps and the sky through its lobes, without passes after it: in
+// the Universal Render Pipeline and in the built-in one. The lobes must be in the mesh's UV sets @first_set@ and @second_set@.
 Shader "Cloudbake/Cloud" {
   Properties {
     [Header(From the asset)]

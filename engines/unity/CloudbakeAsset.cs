@@ -57,5 +57,5 @@ public static class CloudbakeAsset
     }
 
     // cloud_lod1.glb of cloud.glb.
-    public static string LevelFile(string path, int level) => path.Substring(0, path.Length - 4) + "_lod" + level + path.Substring(path.Length - 4);
+    public static string LevelFile(string path, int level) => path.Insert(path.Length - 4, "_lod" + level);
 }

@@ -36,7 +36,8 @@ public static class CloudbakeMath
     {
         level = 0;
         while (level < heights.Length - 1 && height < heights[level] * (1 - band)) ++level;
-        share = level == heights.Length - 1 || height >= heights[level] ? 0 : 1 - (height / heights[level] - (1 - band)) / Mathf.Max(band, 1e-6f);
+        var isLast = level == heights.Length - 1;
+        share = isLast || height >= heights[level] ? 0 : (1 - height / heights[level]) / Mathf.Max(band, 1e-6f);
     }
 
     // The share of the picture's height under which a level is drawn that a bake made for `pixels`, in a picture of a height.

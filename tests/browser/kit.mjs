@@ -19,7 +19,7 @@ const engines = new Map(folders.map(name => [name, rowOf(name)]).filter(([, row]
 
 run('grow', 'hero', '--vertices', '10000', '-o', 'cloud.glb');
 for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', engine);
-// The texts of the kit that are evaluated or compiled here. tests/unity/unity.mjs compiles and runs the scripts and the chain.
+// The texts of the kit that are evaluated or compiled here. tests/browser/unity.mjs compiles and runs the scripts and the chain.
 const used = new Set(['URP/CloudbakeFeature.cs', 'URP/Cloudbake.Universal.asmdef', 'Editor/CloudbakeMaterials.cs',
   'Editor/Cloudbake.Editor.asmdef', 'Cloudbake.asmdef', 'CloudbakeAsset.cs', 'CloudbakeCamera.cs', 'CloudbakeChain.cs',
   'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
@@ -58,13 +58,16 @@ function nodeOf(head, name) {
     before.push(struct !== 'Cloudbake' ? text
       : text.split('\n').slice(1, -2).join('\n').replace(/^(?!Texture2D)(\w+ \w+(, \w+)*;)/gm, 'static $1'));
     return '';
-  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted);$/gm, '').replace(/\bcloudbake\./g, '');
+  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted);$/gm, '')
+    .replace(/\bcloudbake\./g, '');
   return `${before.join('\n')}\n${head} {\n${body}}\n`;
 }
 
 // The inputs of the nodes that are only compiled. Unreal gives a texture object a sampler of its own.
-const IMAGE = 'float2 UV, Texture2D<float4>', NODES = {
-  ColorOfLight: ['float3', 'float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase'],
+const IMAGE = 'float2 UV, Texture2D<float4>';
+const CUSTOM_NODES = {
+  ColorOfLight: ['float3', `float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun,
+    float3 Phase`],
   LightOfLamp: ['float3', `float3 Vector, float3 Place, float3 Normal, float3 LampPlace, float3 LampColor, float Range, float3 Axis,
     float2 Cone`],
   ShadowOfCloud: ['float', `Texture2D<float4> Shadow, SamplerState ShadowSampler, float3 Place, float3 Origin, float3 Right, float3 Up,
@@ -81,12 +84,12 @@ const IMAGE = 'float2 UV, Texture2D<float4>', NODES = {
   'painted/Erode': ['float4', `${IMAGE} Channels, float2 DepthRange, float3 Eye, float3 Right, float3 Up, float3 Forward, float HeightAtOne,
     float3 Origin, float Size`],
   'painted/Composite': ['float3', `${IMAGE} Channels, Texture2D<float4> Drawn, float2 Picture, float3 Scene, float Solid, float2 DepthRange,
-    float3 View, float3 Forward, float3 ToSun, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 FogColor, float SoftDistance,
-    float2 FarFade`],
+    float3 View, float3 Forward, float3 ToSun, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 FogColor,
+    float SoftDistance, float2 FarFade`],
 };
 
 function compileUnreal() {
-  for (const [name, [type, inputs]] of Object.entries(NODES)) {
+  for (const [name, [type, inputs]] of Object.entries(CUSTOM_NODES)) {
     const words = inputs.split(',').map(input => input.trim()), names = words.map(word => word.split(' ')[1]);
     const globals = words.map((word, i) => `${word.replace(names[i], `own_${names[i]}`)};`).join('\n');
     const zeros = ', 0'.repeat({ float: 3, float2: 2, float3: 1, float4: 0 }[type]);
@@ -199,7 +202,8 @@ function evaluate({ text, attributes, cases }) {
 function compileUnity() {
   const text = kit('unity/Cloudbake.shader'), look = kit('unity/CloudbakeLook.hlsl').replace(/^#include "CloudbakeLobe.hlsl"$/m,
     () => kit('unity/CloudbakeLobe.hlsl'));
-  const [, shared] = text.match(/CGINCLUDE\n(.*?)ENDCG/s), stub = name => readFileSync(join(source, `tests/unity/${name}_stub.hlsl`), 'utf8');
+  const [, shared] = text.match(/CGINCLUDE\n(.*?)ENDCG/s);
+  const stub = name => readFileSync(join(source, `tests/unity/${name}_stub.hlsl`), 'utf8');
   const programs = [...[...text.matchAll(/HLSLPROGRAM\n(.*?)ENDHLSL/gs)].map(([, own]) => [stub('urp') + own, 'vertex']),
     ...[...text.matchAll(/CGPROGRAM\n(.*?)ENDCG/gs)].map(([, own]) => [stub('builtin') + shared + own, 'vertexOf'])];
   for (const [own, vertex] of programs)

@@ -42,9 +42,11 @@ public static class Program
         {
             var side = Number(words[1]);
             var box = new Bounds(new Vector3(0, 0, Number(words[2])), new Vector3(side, side, side));
-            Console.WriteLine(MaterialPropertyBlock.Text(CloudbakeMath.Widened(box, Vector3.zero, Number(words[3]), Number(words[4])).extents.x));
+            var widened = CloudbakeMath.Widened(box, Vector3.zero, Number(words[3]), Number(words[4]));
+            Console.WriteLine(MaterialPropertyBlock.Text(widened.extents.x));
         }
-        if (words[0] == "record") Console.WriteLine("[" + string.Join(",\n", Record(JsonUtility.FromJson<Case>(File.ReadAllText(words[1])))) + "]");
+        if (words[0] == "record")
+            Console.WriteLine("[" + string.Join(",\n", Record(JsonUtility.FromJson<Case>(File.ReadAllText(words[1])))) + "]");
         return 0;
     }
 
@@ -52,7 +54,8 @@ public static class Program
     {
         var lobes = CloudbakeAsset.Read(bytes);
         if (lobes == null) return "null";
-        return "{\"numbers\": " + MaterialPropertyBlock.Text(lobes.exponent, lobes.bias, lobes.extinction, lobes.uv_sets[0], lobes.switch_pixels)
+        var numbers = new[] { lobes.exponent, lobes.bias, lobes.extinction, lobes.uv_sets[0], lobes.switch_pixels };
+        return "{\"numbers\": " + MaterialPropertyBlock.Text(numbers)
             + ", \"fit_to\": \"" + lobes.fit_to + "\", \"fault\": \"" + CloudbakeAsset.FaultOf(lobes, 0) + "\"}";
     }
 
@@ -91,7 +94,8 @@ public static class Program
             drawDivisor = given.draw_divisor, ambientSky = ColorOf(given.ambient_sky), ambientGround = ColorOf(given.ambient_ground),
             fogColor = ColorOf(given.fog_color),
         };
-        if ((chain.look == CloudbakeChain.Look.AsPublished) != given.published) throw new Exception("the kit has not the look of its scene");
+        if ((chain.look == CloudbakeChain.Look.AsPublished) != given.published)
+            throw new Exception("the kit has not the look of its scene");
         var steps = Record(chain, camera);
         chain.Dispose();
         if (RenderTexture.taken != 0) throw new Exception(RenderTexture.taken + " images were not released");
@@ -105,8 +109,8 @@ public static class Program
         own.chain = chain;
         Send(own, "OnEnable");
         Send(own, "OnPreRender");
-        var commands = (CommandBuffer)typeof(CloudbakeCamera).GetField("commands", BindingFlags.NonPublic | BindingFlags.Instance).GetValue(own);
-        var steps = commands.steps.ToArray();
+        var field = typeof(CloudbakeCamera).GetField("commands", BindingFlags.NonPublic | BindingFlags.Instance);
+        var steps = ((CommandBuffer)field.GetValue(own)).steps.ToArray();
         if (!camera.forceIntoRenderTexture || camera.depthTextureMode != DepthTextureMode.Depth) throw new Exception("no depth texture");
         Send(own, "OnDisable");
         return steps;

@@ -321,7 +321,8 @@ namespace UnityEngine.Rendering
         public int width, height;
         public RenderTargetIdentifier(Texture texture) { name = texture.name; width = texture.width; height = texture.height; }
         public static implicit operator RenderTargetIdentifier(Texture texture) => new RenderTargetIdentifier(texture);
-        public static implicit operator RenderTargetIdentifier(BuiltinRenderTextureType type) => new RenderTargetIdentifier { name = "color" };
+        public static implicit operator RenderTargetIdentifier(BuiltinRenderTextureType type) =>
+            new RenderTargetIdentifier { name = "color" };
     }
 
     public class CommandBuffer
@@ -333,7 +334,8 @@ namespace UnityEngine.Rendering
         public void Release() { }
         public void SetRenderTarget(RenderTargetIdentifier rt) =>
             target = "\"target\": \"" + rt.name + "\", \"width\": " + rt.width + ", \"height\": " + rt.height;
-        public void ClearRenderTarget(bool clearDepth, bool clearColor, Color backgroundColor) => steps.Add("{\"clear\": true, " + target + "}");
+        public void ClearRenderTarget(bool clearDepth, bool clearColor, Color backgroundColor) =>
+            steps.Add("{\"clear\": true, " + target + "}");
         public void SetGlobalMatrix(string name, Matrix4x4 value) => Global(name, MaterialPropertyBlock.Text(value.rows));
         public void SetGlobalVector(string name, Vector4 value) =>
             Global(name, MaterialPropertyBlock.Text(value.x, value.y, value.z, value.w));

@@ -1,4 +1,4 @@
-// What Cloudbake.shader uses of Unity's libraries, as far as a compiler must know it.
+// What Cloudbake.shader uses of the libraries of the Universal Render Pipeline, as far as a compiler must know it.
 float4x4 unity_ObjectToWorld;
 float3 _WorldSpaceCameraPos;
 #define UNITY_MATRIX_M unity_ObjectToWorld
@@ -7,7 +7,13 @@ float3 _WorldSpaceCameraPos;
 #define CBUFFER_START(name) cbuffer name {
 #define CBUFFER_END };
 struct Light { half3 direction; half3 color; half distanceAttenuation; };
-Light GetMainLight() { Light light; light.direction = half3(0, 1, 0); light.color = half3(1, 1, 1); light.distanceAttenuation = 1; return light; }
+Light GetMainLight() {
+  Light light;
+  light.direction = half3(0, 1, 0);
+  light.color = half3(1, 1, 1);
+  light.distanceAttenuation = 1;
+  return light;
+}
 float3 TransformObjectToWorld(float3 position) { return mul(unity_ObjectToWorld, float4(position, 1)).xyz; }
 float3 TransformObjectToWorldNormal(float3 normal) { return normal; }
 float4 TransformWorldToHClip(float3 position) { return float4(position, 1); }

@@ -1,8 +1,8 @@
 // cloudbake @version@: the body of a Custom node in Unreal, of a post-process material: the clouds over the scene, behind what is nearer.
 // Inputs: Channels, the image of the last step, and Drawn, that of Resolve, texture objects; UV, ViewportUV; Picture, float 2, the ViewSize
 // node; Scene, SceneTexture PostProcessInput0; Solid, SceneTexture SceneDepth; DepthRange, float 2, as for Channels.hlsl; View, the unit
-// vector from the eye (CameraVectorWS times -1); Forward, CameraDirectionVector; ToSun; SunColor, AmbientSky, AmbientGround, FogColor, linear
-// colors; SoftDistance, and FarFade, float 2, in centimetres (0: none). Output: CMOT Float 3, for Emissive Color.
+// vector from the eye (CameraVectorWS times -1); Forward, CameraDirectionVector; ToSun; SunColor, AmbientSky, AmbientGround, FogColor,
+// linear colors; SoftDistance, and FarFade, float 2, in centimetres (0: none). Output: CMOT Float 3, for Emissive Color.
 #structure Cloudbake light noise soft view channel_sum light_uniforms composite solid
 Cloudbake cloudbake;
 cloudbake.picture = Picture;

@@ -1,13 +1,14 @@
-// The kit for Unity without Unity: its scripts are compiled for each render pipeline against stubs of Unity's API, and run; what they record
-// for a camera is drawn in WebGL2 with the kit's own shaders (glslangValidator, SPIRV-Cross), beside the page's passes and `preview`.
-//   node tests/unity/unity.mjs CLOUDBAKE SOURCE_FOLDER [PICTURE.png]
+// The kit for Unity without Unity: its scripts are compiled for each render pipeline against stubs of Unity's API (tests/unity), and run;
+// what they record for a camera is drawn in WebGL2 with the kit's own shaders (glslangValidator, SPIRV-Cross), beside the page's passes
+// and `preview`.
+//   node tests/browser/unity.mjs CLOUDBAKE SOURCE_FOLDER [PICTURE.png]
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { compare, demand, pngValues, testFolder, testPage } from '../browser/browser.mjs';
-import { chunksOf, valuesOf } from '../browser/glb.mjs';
-import { requireTranslators, translated } from '../browser/hlsl.mjs';
+import { demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { chunksOf, valuesOf } from './glb.mjs';
+import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
 for (const program of ['mcs', 'mono'])
@@ -16,7 +17,8 @@ for (const program of ['mcs', 'mono'])
     process.exit(77);
   }
 const { source, folder, run, open } = testFolder();
-const picture_file = process.argv[4], SIZE = picture_file ? [960, 640] : [360, 240], VIEW = ['--camera', '20,-8', '--sun', '130,28'];
+const picture_file = process.argv[4], SIZE = picture_file ? [960, 640] : [360, 240];
+const VIEW = ['--camera', '20,-8', '--sun', '130,28'];
 // Of both pipelines and both ways of the Universal one.
 const PIPELINES = { 'built-in': '', 'URP 2022': 'CLOUDBAKE_URP', 'URP of Unity 6': 'CLOUDBAKE_URP;UNITY_6000_0_OR_NEWER' };
 // What a step of the chain may be off by, because the scripts round its settings to 32 bits and the page does not.
@@ -30,7 +32,8 @@ function compile(kit) {
   return Object.fromEntries(Object.entries(PIPELINES).map(([name, defines], i) => {
     const program = join(folder, `${kit}${i}.exe`), files = readdirSync(join(folder, kit), { recursive: true })
       .filter(file => file.endsWith('.cs') && (defines || !file.startsWith('URP'))).map(file => join(folder, kit, file));
-    const flags = ['-langversion:7.2', '-warnaserror', '-nologo', '-r:System.Runtime.Serialization', '-r:System.Xml', ...defines ? [`-define:${defines}`] : []];
+    const flags = ['-langversion:7.2', '-warnaserror', '-nologo', '-r:System.Runtime.Serialization', '-r:System.Xml',
+      ...defines ? [`-define:${defines}`] : []];
     execFileSync('mcs', [...flags, `-out:${program}`, ...files, join(source, 'tests/unity/stubs.cs'), join(source, 'tests/unity/run.cs')],
       { stdio: 'inherit' });
     return [name, program];
@@ -56,8 +59,9 @@ function testScripts(programs) {
   // Levels: the next one comes over a band of sizes, and pixels are shared without a jump.
   const at = height => answer(program, 'levels', '0.4', '0.2', '0', String(height), '0.15');
   const sizes = [0.5, 0.4, 0.37, 0.341, 0.339, 0.3, 0.2, 0.185, 0.17, 0.1], found = sizes.map(at).map(([level, share]) => level + share);
-  demand(found.every((x, i) => i === 0 || x >= found[i - 1]) && found[0] === 0 && Math.abs(found[2] - 0.5) < 1e-5 && found[4] === 1
-    && Math.abs(found[7] - 1.5) < 1e-5 && found[9] === 2, `levels of detail give way at ${found.map(x => x.toFixed(2)).join(', ')}`);
+  const grows = found.every((x, i) => i === 0 || x >= found[i - 1]), is = (i, x) => Math.abs(found[i] - x) < 1e-5;
+  demand(grows && is(0, 0) && is(2, 0.5) && is(4, 1) && is(7, 1.5) && is(9, 2),
+    `levels of detail give way at ${found.map(x => x.toFixed(2)).join(', ')}`);
 }
 
 // --- The shaders ---
@@ -66,7 +70,8 @@ const withoutPragmas = text => text.replace(/^ *#pragma.*$/gm, '');
 
 // The fragment shader of each pass of the chain, in the order of the file.
 function chainPasses(kit) {
-  const text = readFileSync(join(folder, kit, 'Resources/CloudbakeChain.shader'), 'utf8'), [, shared] = text.match(/HLSLINCLUDE\n(.*?)ENDHLSL/s);
+  const text = readFileSync(join(folder, kit, 'Resources/CloudbakeChain.shader'), 'utf8');
+  const [, shared] = text.match(/HLSLINCLUDE\n(.*?)ENDHLSL/s);
   return [...text.matchAll(/Name "(\w+)".*?HLSLPROGRAM\n(.*?)ENDHLSL/gs)].map(([, name, body]) =>
     ({ name, text: translated(withoutPragmas(shared + body), 'frag', 'fragment') }));
 }
@@ -90,8 +95,9 @@ const mirrored = ([x, y, z]) => [-x, y, z];
 async function record(page, programs, published, draw_divisor) {
   const view = await page.evaluate(() => {
     const { view: v, scene } = window.viewer.renderer, { origin, longest } = scene.noise;
-    return { ...Object.fromEntries(['eye', 'right', 'up', 'forward', 'picture', 'per_pixel', 'clip', 'to_light', 'light_color', 'ambient_sky',
-      'ambient_ground', 'fog_color', 'time', 'depth_range'].map(name => [name, v[name]])), origin, longest };
+    const names = ['eye', 'right', 'up', 'forward', 'picture', 'per_pixel', 'clip', 'to_light', 'light_color', 'ambient_sky',
+      'ambient_ground', 'fog_color', 'time'];
+    return { ...Object.fromEntries(names.map(name => [name, v[name]])), origin, longest };
   });
   const [width, height] = view.picture, m11 = 2 / (view.per_pixel * height), m00 = m11 * height / width;
   const [eye, right, up, forward] = ['eye', 'right', 'up', 'forward'].map(name => mirrored(view[name]));
@@ -204,31 +210,34 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   };
   const globals = {}, differences = {}, last = {};
-  for (const step of steps) {
+  const drawPass = (program, target, values) => {
+    gpu.drawTo([target]);
+    gl.useProgram(program);
+    setBlocks(program, values);
+    let unit = 0;
+    for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++i) {
+      const uniform = gl.getActiveUniform(program, i), [, image] = uniform.name.match(/^SPIRV_Cross_Combined(.*)SPIRV_Cross/) ?? [];
+      if (!image) continue;
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, images[values[image] ?? image].texture);
+      gl.uniform1i(gl.getUniformLocation(program, uniform.name), unit++);
+    }
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  };
+  const takeStep = step => {
     if (step.global) globals[step.global] = step.value;
     if (step.clear) images[step.target] = texture(step.width, step.height);
     if (step.renderer && !start) drawCloud(globals, images[step.target]);
-    if (step.pass === undefined) continue;
+    if (step.pass === undefined) return;
     const { name } = passes[step.pass], is_last = step.target === 'color';
-    const target = images[step.target] = texture(is_last ? width : step.width, is_last ? height : step.height);
-    const values = { ...step.values, _ZBufferParams: [0, 0, 1, 0] }, program = programs[step.pass];
     if (name === 'Mean' && start) images[step.target] = gpu.targets[start];
     else {
-      gpu.drawTo([target]);
-      gl.useProgram(program);
-      setBlocks(program, values);
-      let unit = 0;
-      for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++i) {
-        const uniform = gl.getActiveUniform(program, i), [, image] = uniform.name.match(/^SPIRV_Cross_Combined(.*)SPIRV_Cross/) ?? [];
-        if (!image) continue;
-        gl.activeTexture(gl.TEXTURE0 + unit);
-        gl.bindTexture(gl.TEXTURE_2D, images[values[image] ?? image].texture);
-        gl.uniform1i(gl.getUniformLocation(program, uniform.name), unit++);
-      }
-      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      images[step.target] = texture(is_last ? width : step.width, is_last ? height : step.height);
+      drawPass(programs[step.pass], images[step.target], { ...step.values, _ZBufferParams: [0, 0, 1, 0] });
     }
     last[name] = images[step.target];
-  }
+  };
+  steps.forEach(takeStep);
   // Beside the page's images of the same steps.
   for (const [name, image] of Object.entries(against)) {
     const own = read(last[name]), other = read(gpu.targets[image]);
@@ -269,16 +278,19 @@ void main() {
 // --- The asset as Unity's importers leave it: x mirrored, V flipped ---
 
 function meshOf() {
-  const asset = chunksOf(readFileSync(join(folder, 'cloud.glb'))), [primitive] = asset.json.meshes[0].primitives, { attributes } = primitive;
+  const asset = chunksOf(readFileSync(join(folder, 'cloud.glb'))), [primitive] = asset.json.meshes[0].primitives;
+  const { attributes } = primitive;
   const info = asset.json.asset.extras.cloudbake, [n] = info.uv_sets, values = name => Array.from(valuesOf(asset, attributes[name]));
   const flipX = all => all.map((x, i) => i % 3 ? x : -x), flipV = all => all.map((x, i) => i % 2 ? 1 - x : x);
   return {
     attributes: {
       input_position: { size: 3, values: flipX(values('POSITION')) }, input_normal: { size: 3, values: flipX(values('NORMAL')) },
-      input_first: { size: 2, values: flipV(values(`TEXCOORD_${n}`)) }, input_second: { size: 2, values: flipV(values(`TEXCOORD_${n + 1}`)) },
+      input_first: { size: 2, values: flipV(values(`TEXCOORD_${n}`)) },
+      input_second: { size: 2, values: flipV(values(`TEXCOORD_${n + 1}`)) },
     },
     indices: Array.from(valuesOf(asset, primitive.indices)),
-    constants: { _Exponent: [info.exponent], _Bias: [info.bias], _Extinction: [info.extinction], _OfVolume: [Number(info.fit_to === 'volume')] },
+    constants: { _Exponent: [info.exponent], _Bias: [info.bias], _Extinction: [info.extinction],
+      _OfVolume: [Number(info.fit_to === 'volume')] },
   };
 }
 
@@ -294,8 +306,9 @@ async function testSolids(page, programs, draw) {
   const images = new Set(steps.filter(step => step.width).map(step => step.width));
   const free = (await draw({ steps })).opacity, at = i => i % width;
   const walled = (await draw({ steps, solid: free.map((_, i) => at(i) < edge ? 1e-3 : 1e9) })).opacity;
-  const before = walled.filter((x, i) => at(i) < edge && x !== 0).length, beside = walled.filter((x, i) => at(i) >= edge && x !== free[i]).length;
-  const hidden = free.filter((x, i) => at(i) < edge && x > 0.5).length, seen = free.filter((x, i) => at(i) >= edge && x > 0.5).length;
+  const count = holds => free.filter((x, i) => holds(x, walled[i], at(i) < edge)).length;
+  const before = count((_, x, is_wall) => is_wall && x !== 0), beside = count((x, own, is_wall) => !is_wall && x !== own);
+  const hidden = count((x, _, is_wall) => is_wall && x > 0.5), seen = count((x, _, is_wall) => !is_wall && x > 0.5);
   demand(images.size === 1 && images.has(width / 2) && hidden > 500 && seen > 500 && before === 0 && beside === 0,
     `at half the resolution, of ${hidden} covered pixels ${before} leak over a wall, and of ${seen} beside it ${beside} change`);
   // Nearer and nearer planes: the cloud fades in over the soft distance, and never the other way round.
@@ -342,7 +355,8 @@ await testPage(folder, async page => {
     demand(near(picture, truth, 2) >= 0.999, `${kit}: ${percent(near(picture, truth, 2))} of the picture is within 2 of preview's`);
 
     const whole = await draw({});
-    demand(near(whole.picture, truth, 2) >= 0.99, `${kit}: with clouds that Unity's shader draws, ${percent(near(whole.picture, truth, 2))}`);
+    demand(near(whole.picture, truth, 2) >= 0.99,
+      `${kit}: with clouds that Unity's shader draws, ${percent(near(whole.picture, truth, 2))}`);
     const wrong = steps.map(step => step.values?.seed_ ? { ...step, values: { ...step.values, seed_: [1] } }
       : step.values?.axis_ ? { ...step, values: { ...step.values, axis_: [1, 0, 0, 0] } } : step);
     const mistaken = await draw({ steps: wrong });
