@@ -28,7 +28,7 @@ Shader "Cloudbake/Cloud" {
   }
 
   SubShader {
-    PackageRequirements { "com.unity.render-pipelines.universal" }
+    PackageRequirements { "com.unity.render-pipelines.universal": "14.0" }
     Tags { "RenderPipeline" = "UniversalPipeline" "RenderType" = "TransparentCutout" "Queue" = "Transparent-400" }
     Pass {
       Tags { "LightMode" = "UniversalForward" }
