@@ -6,6 +6,17 @@ const vec2 CLOUDBAKE_SHAPE = vec2(@exponent@, @bias@);
 const float CLOUDBAKE_EXTINCTION = @extinction@;
 // The lobes are in TEXCOORD_@first_set@ and TEXCOORD_@second_set@.
 
+// The light and the fog of a scene file, or those of the previewer: the unit vector to the sun, linear colors, half-Lambert of sun and sky,
+// the share, the asymmetry and the limit of the phase, and the density of fog per world unit.
+const vec3 CLOUDBAKE_TO_SUN = vec3(@sun_direction@);
+const vec3 CLOUDBAKE_SUN_COLOR = vec3(@sky_colors_sun@);
+const vec3 CLOUDBAKE_AMBIENT_SKY = vec3(@sky_colors_ambient_sky@);
+const vec3 CLOUDBAKE_AMBIENT_GROUND = vec3(@sky_colors_ambient_ground@);
+const vec2 CLOUDBAKE_HALF_LAMBERT = vec2(@light_half_lambert@, @light_half_lambert_sky@);
+const vec3 CLOUDBAKE_PHASE = vec3(@light_phase@, @light_phase_asymmetry@, @light_phase_limit@);
+const vec3 CLOUDBAKE_FOG_COLOR = vec3(@fog_color@);
+const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
+
 #include "lobe.glsl"
 
 #include "light.glsl"

@@ -7,6 +7,17 @@ static const float2 CLOUDBAKE_SHAPE = float2(@exponent@, @bias@);
 static const float CLOUDBAKE_EXTINCTION = @extinction@;
 // The lobes are in TEXCOORD_@first_set@ and TEXCOORD_@second_set@.
 
+// The light and the fog of a scene file, or those of the previewer: the unit vector to the sun, linear colors, half-Lambert of sun and sky,
+// the share, the asymmetry and the limit of the phase, and the density of fog per world unit.
+static const float3 CLOUDBAKE_TO_SUN = float3(@sun_direction@);
+static const float3 CLOUDBAKE_SUN_COLOR = float3(@sky_colors_sun@);
+static const float3 CLOUDBAKE_AMBIENT_SKY = float3(@sky_colors_ambient_sky@);
+static const float3 CLOUDBAKE_AMBIENT_GROUND = float3(@sky_colors_ambient_ground@);
+static const float2 CLOUDBAKE_HALF_LAMBERT = float2(@light_half_lambert@, @light_half_lambert_sky@);
+static const float3 CLOUDBAKE_PHASE = float3(@light_phase@, @light_phase_asymmetry@, @light_phase_limit@);
+static const float3 CLOUDBAKE_FOG_COLOR = float3(@fog_color@);
+static const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
+
 #include "lobe.hlsl"
 
 #include "light.hlsl"

@@ -1,4 +1,4 @@
-// cloudbake @version@: the lobes of mesh clouds in Unity. Cloudbake.shader uses this file, and so can a Custom Function node of Shader
+// cloudbake @version@: the lobes of mesh clouds in Unity. The shaders use this file, and so can a Custom Function node of Shader
 // Graph (CloudbakeLight). docs/engines/unity.md has the steps.
 #ifndef CLOUDBAKE_LOBE_INCLUDED
 #define CLOUDBAKE_LOBE_INCLUDED
@@ -6,6 +6,14 @@
 #include "lobe.hlsl"
 
 #include "light.hlsl"
+
+#include "lamp.hlsl"
+
+#include "cast_shadow.hlsl"
+
+#include "noise.hlsl"
+
+#include "soft.hlsl"
 
 // The lobe of a vertex in object space. Unity's importers of glTF store 1 - v, and mirror x for its left-handed space.
 float4 objectLobe(float2 first, float2 second) {

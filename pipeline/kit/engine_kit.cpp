@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/text/json.h"
@@ -62,13 +63,25 @@ std::string_view includedBy(std::string_view line) {
   return line.substr(kBefore.size(), line.size() - kBefore.size() - 1);
 }
 
+// What a line `#structure NAME FILE…` becomes: those files of GLSL as a structure of HLSL. Empty of another line.
+std::string structureOf(std::string_view line) {
+  constexpr std::string_view kBefore = "#structure ";
+  if (!line.starts_with(kBefore)) return {};
+  std::istringstream words{std::string(line.substr(kBefore.size()))};
+  std::string name, glsl;
+  words >> name;
+  for (std::string file; words >> file;) glsl += sharedText(file + ".glsl");
+  return hlslStructure(name, sharedText("glsl.hlsl"), glsl);
+}
+
 std::string withIncludes(std::string_view text) {
   std::string out;
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     std::string_view line = text.substr(begin, end - begin);
-    const std::string included = sharedText(includedBy(line.substr(0, line.find('\n'))));
-    out += included.empty() ? std::string(line) : withIncludes(included);
+    const std::string_view words = line.substr(0, line.find('\n'));
+    const std::string included = sharedText(includedBy(words)), structure = structureOf(words);
+    out += !structure.empty() ? structure : included.empty() ? std::string(line) : withIncludes(included);
     begin = end;
   }
   return out;

@@ -26,7 +26,8 @@ struct EngineFile {
 /// k, b and σ of a cloud whose longest side is 1, baked with the defaults: what the kit has without an asset.
 AssetInfo defaultAssetInfo();
 
-/// The files of an engine, without its engine.json. A line that includes a shared file (`#include "lobe.glsl"`) becomes that file's text,
+/// The files of an engine, without its engine.json. A line that includes a shared file (`#include "lobe.glsl"`) becomes that file's text, a
+/// line `#structure NAME FILE…` the structure of HLSL that hlslStructure makes of files of GLSL, and
 /// @exponent@, @bias@, @extinction@, @first_set@, @second_set@ and @version@ become those of `info`, and the marks of sceneConstants those
 /// of `scene`. Throws UsageError for an unknown engine.
 std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info, const SceneFile& scene = defaultScene());

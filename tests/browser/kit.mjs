@@ -19,8 +19,10 @@ const engines = new Map(folders.map(name => [name, rowOf(name)]).filter(([, row]
 
 run('grow', 'hero', '--vertices', '10000', '-o', 'cloud.glb');
 for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', engine);
-// The texts of the kit that are evaluated or compiled here. No compiler of C# is installed.
-const used = new Set(['unity/Editor/CloudbakeMaterials.cs']);
+// The texts of the kit that are evaluated or compiled here. tests/browser/unity.mjs compiles and runs the scripts and the chain.
+const used = new Set(['URP/CloudbakeFeature.cs', 'URP/Cloudbake.Universal.asmdef', 'Editor/CloudbakeMaterials.cs',
+  'Editor/Cloudbake.Editor.asmdef', 'Cloudbake.asmdef', 'CloudbakeAsset.cs', 'CloudbakeCamera.cs', 'CloudbakeChain.cs',
+  'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
 const kit = name => (used.add(name), readFileSync(join(folder, name), 'utf8'));
 
 // --- What is evaluated of an engine ---
@@ -49,10 +51,51 @@ Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
   return result;
 }`, 'vert');
 
-// A function with the body of a node of Unreal. Its struct stands before it, because glslang knows no methods of a local one.
+// A function with the body of a node of Unreal. glslang knows no methods of a local structure, nor such that call each other in their
+// arguments: methods become functions, fields static variables, and images that are put into fields global ones.
 function nodeOf(head, name) {
-  const structs = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct Cloudbake .*^\};\n/ms, text => (structs.push(text), ''));
-  return `${structs}${head} {\n${body}}\n`;
+  const before = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct (\w+) \{.*?^\};\n/gms, (text, struct) => {
+    before.push(struct !== 'Cloudbake' ? text
+      : text.split('\n').slice(1, -2).join('\n').replace(/^(?!Texture2D)(\w+ \w+(, \w+)*;)/gm, 'static $1'));
+    return '';
+  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted);$/gm, '')
+    .replace(/\bcloudbake\./g, '');
+  return `${before.join('\n')}\n${head} {\n${body}}\n`;
+}
+
+// The inputs of the nodes that are only compiled. Unreal gives a texture object a sampler of its own.
+const IMAGE = 'float2 UV, Texture2D<float4>';
+const CUSTOM_NODES = {
+  ColorOfLight: ['float3', `float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun,
+    float3 Phase`],
+  LightOfLamp: ['float3', `float3 Vector, float3 Place, float3 Normal, float3 LampPlace, float3 LampColor, float Range, float3 Axis,
+    float2 Cone`],
+  ShadowOfCloud: ['float', `Texture2D<float4> Shadow, SamplerState ShadowSampler, float3 Place, float3 Origin, float3 Right, float3 Up,
+    float3 ToSun, float Width, float Height, float Top, float Bottom, float Strength`],
+  SoftOpacity: ['float2', `float3 Normal, float3 View, float3 OwnPlace, float Seconds, float2 Pixel, float Along, float Away, float Solid,
+    float2 Rim, float4 Noise, float SoftDistance, float2 NearFade, float2 FarFade`],
+  'painted/Channels': ['float3', 'float2 Light, float3 Normal, float3 ToSun, float Along, float2 DepthRange'],
+  'painted/Resolve': ['float4', `${IMAGE} Captured`],
+  'painted/Weighted': ['float4', `${IMAGE} Channels, float OfDepth`],
+  'painted/Box': ['float4', `${IMAGE} Image, Texture2D<float4> Channels, float2 Axis, float2 Widths`],
+  'painted/Spread': ['float4', `${IMAGE} Channels, Texture2D<float4> Weighted`],
+  'painted/Soft': ['float4', `${IMAGE} Channels, Texture2D<float4> Weighted`],
+  'painted/Distort': ['float4', `${IMAGE} Channels, float Seconds`],
+  'painted/Erode': ['float4', `${IMAGE} Channels, float2 DepthRange, float3 Eye, float3 Right, float3 Up, float3 Forward, float HeightAtOne,
+    float3 Origin, float Size`],
+  'painted/Composite': ['float3', `${IMAGE} Channels, Texture2D<float4> Drawn, float2 Picture, float3 Scene, float Solid, float2 DepthRange,
+    float3 View, float3 Forward, float3 ToSun, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 FogColor,
+    float SoftDistance, float2 FarFade`],
+};
+
+function compileUnreal() {
+  for (const [name, [type, inputs]] of Object.entries(CUSTOM_NODES)) {
+    const words = inputs.split(',').map(input => input.trim()), names = words.map(word => word.split(' ')[1]);
+    const globals = words.map((word, i) => `${word.replace(names[i], `own_${names[i]}`)};`).join('\n');
+    const zeros = ', 0'.repeat({ float: 3, float2: 2, float3: 1, float4: 0 }[type]);
+    translated(`${nodeOf(`${type} node(${inputs})`, name)}\n${globals}
+float4 main() : SV_Target { return float4(node(${names.map(input => `own_${input}`)})${zeros}); }`, 'frag');
+  }
 }
 
 // Of each engine: the vector o * d of a vertex in the mesh's space there, the shares of the light of sun and sky, and for which of these
@@ -155,15 +198,20 @@ function evaluate({ text, attributes, cases }) {
   return found;
 }
 
-// The program of the ShaderLab file, with stand-ins for Unity's libraries; and the node of Unreal that is no vertex's.
+// The programs of the ShaderLab file, one per pipeline and light, with stand-ins for Unity's libraries and what multi_compile switches on.
 function compileUnity() {
-  const program = kit('unity/Cloudbake.shader').match(/HLSLPROGRAM\n(.*)ENDHLSL/s)[1].replace(/^ *#(pragma|include "Packages).*$/gm, '')
-    .replace(/^ *#include "CloudbakeLobe.hlsl"/m, () => kit('unity/CloudbakeLobe.hlsl'));
-  const stub = readFileSync(join(source, 'tests/browser/unity_stub.hlsl'), 'utf8');
-  for (const [stage, entry] of [['vert', 'vertex'], ['frag', 'fragment']]) translated(stub + program, stage, entry);
-  const inputs = 'float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase';
-  translated(`${nodeOf(`float3 node(${inputs})`, 'ColorOfLight')}
-float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xyx, 0, at.yxy, at.xxy, at.xyx), 1); }`, 'frag');
+  const text = kit('unity/Cloudbake.shader'), look = kit('unity/CloudbakeLook.hlsl').replace(/^#include "CloudbakeLobe.hlsl"$/m,
+    () => kit('unity/CloudbakeLobe.hlsl'));
+  const [, shared] = text.match(/CGINCLUDE\n(.*?)ENDCG/s);
+  const stub = name => readFileSync(join(source, `tests/unity/${name}_stub.hlsl`), 'utf8');
+  const programs = [...[...text.matchAll(/HLSLPROGRAM\n(.*?)ENDHLSL/gs)].map(([, own]) => [stub('urp') + own, 'vertex']),
+    ...[...text.matchAll(/CGPROGRAM\n(.*?)ENDCG/gs)].map(([, own]) => [stub('builtin') + shared + own, 'vertexOf'])];
+  for (const [own, vertex] of programs)
+    for (const define of ['', '#define LOD_FADE_CROSSFADE\n#define _ADDITIONAL_LIGHTS_VERTEX\n'])
+      for (const [stage, entry] of [['vert', vertex], ['frag', 'fragment']])
+        translated(define + own.replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting|"AutoLight)).*$/gm, '')
+          .replace(/^ *#include "CloudbakeLook.hlsl"/m, () => look), stage, entry);
+  demand(programs.length === 3, 'the passes of Cloudbake.shader compile: of URP, and ForwardBase and ForwardAdd of the built-in pipeline');
 }
 
 // The vertices of the asset, its two sets.
@@ -244,8 +292,9 @@ await testPage(folder, async page => {
   const unequal = light.hlsl.reduce((sum, one, i) => sum + one.filter((value, v) => !Object.is(value, light.glsl[i][v])).length, 0);
   demand(unequal === 0, `HLSL: ${unequal} of ${values} values differ from those of GLSL in any bit`);
   compileUnity();
+  compileUnreal();
   const written = [...engines.keys()].flatMap(name => readdirSync(join(folder, name), { recursive: true }).map(file => `${name}/${file}`));
   const unused = written.filter(name => statSync(join(folder, name)).isFile() && !used.has(name));
   demand(!unused.length, `every text of these kits is evaluated or compiled${unused.length ? `, but not ${unused.join(', ')}` : ''}`);
-  demand(true, 'the passes of Cloudbake.shader and every node of Unreal compile');
+  demand(true, 'every node of Unreal compiles');
 });

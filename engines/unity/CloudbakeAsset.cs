@@ -1,0 +1,61 @@
+// cloudbake @version@: what a baked GLB and a shadow's picture say about themselves.
+using System;
+using System.Text;
+using UnityEngine;
+
+public static class CloudbakeAsset
+{
+    [Serializable]
+    public sealed class Lobes
+    {
+        public float exponent, bias, extinction;
+        public int[] uv_sets;
+        public string fit_to;
+        public float switch_pixels;  // of a level of detail: the most that the longest side may cover
+    }
+
+    // The frame of a shadow's picture, in the space of glTF.
+    [Serializable]
+    public sealed class ShadowFrame
+    {
+        public float[] origin, right, up, to_sun;
+        public float width, height, sigma;
+    }
+
+    // In the space of Unity.
+    public static Vector3 Vector(float[] v) => CloudbakeMath.Mirrored(new Vector3(v[0], v[1], v[2]));
+
+    [Serializable] sealed class Extras { public Lobes cloudbake = null; }
+    [Serializable] sealed class Asset { public Extras extras = null; }
+    [Serializable] sealed class Document { public Asset asset = null; }
+
+    // The JSON of a GLB is its first chunk: a header of 12 bytes, the chunk's length, its type, its text. Null if there is none.
+    public static string JsonOf(byte[] bytes)
+    {
+        if (bytes.Length < 20 || BitConverter.ToUInt32(bytes, 0) != 0x46546C67) return null;
+        var length = BitConverter.ToUInt32(bytes, 12);
+        return length > bytes.Length - 20 ? null : Encoding.UTF8.GetString(bytes, 20, (int)length);
+    }
+
+    // Null if cloudbake did not bake it.
+    public static Lobes Read(byte[] bytes)
+    {
+        var text = JsonOf(bytes);
+        return text == null ? null : JsonUtility.FromJson<Document>(text)?.asset?.extras?.cloudbake;
+    }
+
+    // Why a shader that reads the lobes from `set` cannot draw an asset; null if it can.
+    public static string FaultOf(Lobes lobes, int set)
+    {
+        if (lobes == null || lobes.uv_sets == null || lobes.uv_sets.Length == 0)
+            return "there is no asset.extras.cloudbake in it: bake it with cloudbake";
+        foreach (var number in new[] { lobes.exponent, lobes.bias, lobes.extinction })
+            if (float.IsNaN(number) || float.IsInfinity(number))
+                return "exponent, bias or extinction in asset.extras.cloudbake is not finite: bake it again";
+        return lobes.uv_sets[0] == set ? null : "its lobes are in UV set " + lobes.uv_sets[0] + ", and the shaders read set " + set
+            + ": write the shaders for this asset (cloudbake shader unity ASSET.glb -o DIR)";
+    }
+
+    // cloud_lod1.glb of cloud.glb.
+    public static string LevelFile(string path, int level) => path.Insert(path.Length - 4, "_lod" + level);
+}
