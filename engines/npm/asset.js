@@ -27,6 +27,7 @@ export const skyDefaults = colorOf => Object.fromEntries(Object.keys(SKY).map(na
 export const cloudDefaults = colorOf => ({
   ...DEFAULTS, ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), halfLambert: 0.5, phase: {}, flipV: false,
   ofVolume: false, harmonicOrder: 0, harmonicExtinction: DEFAULTS.extinction,
+  rimFrequency: 8, rimScroll: [0, 0, 0], depthTexture: null,
 });
 
 // A number of the asset. Shaders have 32 bits for it, JSON has more.
@@ -60,3 +61,30 @@ export function settingsOf(json) {
     harmonicExtinction: extinction,
   };
 }
+
+// The settings of the soft look, which a material has without passes after the clouds, when each is off.
+const SOFT = { rimStart: 0, rimEnd: 0, softDistance: 0, nearFade: [0, 0], farFade: [0, 0] };
+
+// Gives them to a class of materials. A material becomes `soft` by the first one that is not off: only then its shader leaves out pixels,
+// which costs graphics cards the early test of depth.
+export function addSoftSettings(Material) {
+  for (const [name, off] of Object.entries(SOFT))
+    Object.defineProperty(Material.prototype, name, {
+      get() { return this.softSettings?.[name] ?? off; },
+      set(value) {
+        this.softSettings = { ...this.softSettings, [name]: value };
+        if (String(value) !== String(off)) this.soft = true;
+      },
+    });
+}
+export const SOFT_NAMES = Object.keys(SOFT);
+
+// The uniforms of the soft look. `painted`: what the painted look needs while it draws, or null. `shown`: from and to which threshold the
+// mesh is drawn.
+export const softValues = (material, painted, shown = [0, 1]) => ({
+  rim: painted ? [0, 0] : [material.rimStart, material.rimEnd],
+  near_fade: painted ? painted.nearFade : material.nearFade,
+  far_fade: painted ? [0, 0] : material.farFade,
+  soft_distance: painted ? 0 : material.softDistance,
+  rim_frequency: material.rimFrequency, rim_scroll: material.rimScroll, dither_shift: painted ? painted.shift : 0, shown,
+});

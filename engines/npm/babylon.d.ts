@@ -1,4 +1,5 @@
 import type { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
+import type { BaseTexture } from '@babylonjs/core/Materials/Textures/baseTexture.js';
 import type { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
 import type { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import type { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
@@ -21,7 +22,7 @@ export interface SunlitSettings extends Sun<Vector3, DirectionalLight, Color3> {
   tone: 'cloudbake' | 'linear';
 }
 
-export interface CloudSettings extends SunlitSettings, Lobes<Color3> {}
+export interface CloudSettings extends SunlitSettings, Lobes<Color3, BaseTexture> {}
 
 export interface SkySettings extends SunlitSettings, SkyColors<Color3> {}
 

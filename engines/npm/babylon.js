@@ -19,8 +19,8 @@ import { Vector2, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
-import { DAY, DEFAULTS, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
-import { PIXEL_COLOR, SKY_COLOR, TONE, vertexLight } from './shaders.js';
+import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, settingsOf, skyDefaults, softValues, sunDefaults } from './asset.js';
+import { CHANNELS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, vertexLight } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? VertexBuffer.UVKind : `${VertexBuffer.UVKind}${n + 1}`;
@@ -39,8 +39,12 @@ uniform float is_perspective;
 #include<morphTargetsVertexGlobalDeclaration>
 #include<morphTargetsVertexDeclaration>[0..maxSimultaneousMorphTargets]
 #include<fogVertexDeclaration>
+uniform vec2 painted_place;  // of a sample in its pixel, on the screen, while PaintedClouds draws
 varying vec2 cloud_light;
 varying vec3 cloud_view;
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+#endif
 ${vertexLight()}
 void main() {
   vec3 positionUpdated = position;
@@ -51,7 +55,14 @@ void main() {
   #include<bonesVertex>
   vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);
   gl_Position = viewProjection * worldPos;
-  cloud_light = lightOfVertex(${names.join(', ')}, normalUpdated, mat3(finalWorld));
+  gl_Position.xy += painted_place * gl_Position.w;
+  vec4 lobe = lobeInWorld(unpackLobe(${names.join(', ')}, flipped), mat3(finalWorld));
+  vec3 facing = normalInWorld(normalUpdated, mat3(finalWorld));
+  cloud_light = lightOfVertex(lobe, facing, mat3(finalWorld));
+  #ifdef SOFT
+    cloud_normal = facing;
+    cloud_place = position;
+  #endif
   cloud_view = worldPos.xyz * is_perspective - eye;
   #include<fogVertex>
 }
@@ -70,7 +81,25 @@ varying vec2 cloud_light;
 varying vec3 cloud_view;
 ${PIXEL_COLOR}
 ${TONE}
+${CHANNELS}
+uniform vec2 painted_range;  // of depth, while PaintedClouds draws
+uniform vec3 forward;
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+  ${SOFT}
+  uniform float has_solid;
+  uniform highp sampler2D solid_depth;  // distances along the view's axis
+#endif
 void main() {
+  float away = dot(cloud_view, forward);
+  #ifdef SOFT
+    float solid = has_solid > 0.0 ? texelFetch(solid_depth, ivec2(gl_FragCoord.xy), 0).r : 1e30;
+    if (opacityOfPixel(cloud_normal, cloud_view, cloud_place, away, solid) <= thresholdOfPixel()) discard;
+  #endif
+  if (painted_range.y > painted_range.x) {
+    gl_FragColor = channelsOf(cloud_light, away, painted_range);
+    return;
+  }
   vec4 color = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
   ${TO_SCREEN}
   #include<fogFragment>
@@ -102,6 +131,12 @@ void main() {
   gl_FragColor = color;
 }
 `;
+
+// The unit vector along which a camera looks, in the world.
+export function forwardOf(camera) {
+  const { m } = camera.getViewMatrix();
+  return new Vector3(m[2], m[6], m[10]).scale(camera.getScene().useRightHandedSystem ? -1 : 1);
+}
 
 const colorOf = rgb => Color3.FromArray(rgb);
 
@@ -147,6 +182,9 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['extinction']} */ extinction;
   /** @type {Settings['halfLambert']} */ halfLambert;
   /** @type {Settings['flipV']} */ flipV;
+  /** @type {Settings['ofVolume']} */ ofVolume;
+  /** @type {Settings['depthTexture']} */ depthTexture;
+  painted = null;  // what PaintedClouds needs while it draws
 
   constructor(name, scene, parameters = {}) {
     const { uvSets = DEFAULTS.uvSets, ...others } = parameters, names = uvSets.map(nameOfSet);
@@ -154,7 +192,9 @@ export class CloudMaterial extends SunlitMaterial {
       attributes: ['position', 'normal', ...names], defines: ['NORMAL'],
       uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color',
         'ambient_sky', 'ambient_ground', 'shape', 'extinction',
-        'half_lambert', 'volume_gain', 'flipped', 'phase'],
+        'half_lambert', 'volume_gain', 'flipped', 'phase', 'forward', 'painted_range', 'painted_place', 'has_solid',
+        ...Object.keys(softValues({}))],
+      samplers: ['solid_depth'],
     });
     Object.assign(this, cloudDefaults(colorOf), { uvSets }, others);
   }
@@ -164,21 +204,43 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
+  get soft() { return this.options.defines.includes('SOFT'); }
+  set soft(is_soft) { this.options.defines = [...this.options.defines.filter(word => word !== 'SOFT'), ...is_soft ? ['SOFT'] : []]; }
+
+  bind(world, mesh, effectOverride, subMesh) {
+    super.bind(world, mesh, effectOverride, subMesh);
+    // Meshes that follow each other share the other uniforms.
+    if (this.soft) (effectOverride ?? subMesh?.effect ?? this.getEffect()).setArray2('shown', mesh?.metadata?.cloudShown ?? [0, 1]);
+  }
+
   writeUniforms() {
-    const camera = this.getScene().activeCamera, is_perspective = camera.mode === Camera.PERSPECTIVE_CAMERA;
-    this.setVector3('eye', is_perspective ? camera.globalPosition : camera.getForwardRay().direction.scale(-1));
+    const camera = this.getScene().activeCamera, is_perspective = camera.mode === Camera.PERSPECTIVE_CAMERA, forward = forwardOf(camera);
+    this.setVector3('eye', is_perspective ? camera.globalPosition : forward.scale(-1));
     this.setFloat('is_perspective', is_perspective ? 1 : 0);
     this.setColor3('sun_color', this.sunColor);
     this.setColor3('ambient_sky', this.ambientSky);
     this.setColor3('ambient_ground', this.ambientGround);
     this.setVector2('shape', new Vector2(this.exponent, this.bias));
     this.setFloat('extinction', this.extinction);
-    this.setFloat('half_lambert', this.halfLambert);
-    this.setFloat('volume_gain', 1);  // of the painted look, which Babylon.js does not have
+    this.setFloat('half_lambert', this.painted?.halfLambert ?? this.halfLambert);
+    this.setFloat('volume_gain', this.ofVolume ? this.painted?.volumeGain ?? 1 : 1);
+    this.setVector3('forward', forward);
+    this.setArray2('painted_range', this.painted?.depthRange ?? [0, 0]);
+    this.setArray2('painted_place', this.painted?.place ?? [0, 0]);
+    if (this.soft) this.writeSoft();
     this.setFloat('flipped', this.flipV ? 1 : 0);
     this.setVector3('phase', new Vector3(this.phase.share, this.phase.asymmetry, this.phase.limit));
   }
+
+  writeSoft() {
+    const setters = { 1: 'setFloat', 2: 'setArray2', 3: 'setArray3' }, depth = this.painted ? null : this.depthTexture;
+    for (const [name, value] of Object.entries(softValues(this, this.painted))) this[setters[value.length ?? 1]](name, value);
+    this.setFloat('has_solid', depth ? 1 : 0);
+    if (depth) this.setTexture('solid_depth', depth);
+    else this.removeTexture('solid_depth');
+  }
 }
+addSoftSettings(CloudMaterial);
 
 // For a mesh that covers the screen, which createCloudSky makes, and cameras with perspective.
 export class SkyMaterial extends SunlitMaterial {

@@ -1,4 +1,4 @@
-import type { Color, ColorRepresentation, DirectionalLight, Mesh, BufferGeometry, ShaderMaterial,
+import type { Color, ColorRepresentation, DepthTexture, DirectionalLight, Mesh, BufferGeometry, ShaderMaterial,
   ShaderMaterialParameters, Vector3 } from 'three';
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import type { Lobes, Phase, SkyColors, Sun } from './settings.js';
@@ -14,7 +14,7 @@ export interface SunlitSettings extends Sun<Vector3, DirectionalLight, Color> {
   tone: 'renderer' | 'cloudbake';
 }
 
-export interface CloudSettings extends SunlitSettings, Lobes<Color> {
+export interface CloudSettings extends SunlitSettings, Lobes<Color, DepthTexture> {
   /** The numbers n of the two TEXCOORD_n that contain the lobes. */
   uvSets: [number, number];
   /**

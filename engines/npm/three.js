@@ -1,8 +1,9 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Matrix3, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
   Vector2, Vector3 } from 'three';
-import { DAY, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
-import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, harmonicNames, vertexLight } from './shaders.js';
+import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, settingsOf, skyDefaults, softValues, sunDefaults } from './asset.js';
+import { CHANNELS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, harmonicNames, vertexLight } from './shaders.js';
+import { SOLID_DISTANCE } from './three_depth.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? 'uv' : n < 4 ? `uv${n}` : `texcoord_${n}`;
@@ -17,6 +18,9 @@ const cloudVertex = (names, order) => `
 ${names.filter(name => name !== 'uv').map(name => `attribute vec2 ${name};`).join('\n')}
 varying vec2 cloud_light;
 varying vec3 cloud_view;
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+#endif
 ${vertexLight(order)}
 void main() {
   #include <morphinstance_vertex>
@@ -42,7 +46,13 @@ void main() {
     mat4 blend = skinWeight.x * boneMatX + skinWeight.y * boneMatY + skinWeight.z * boneMatZ + skinWeight.w * boneMatW;
     to_world *= bindMatrixInverse * blend * bindMatrix;
   #endif
-  cloud_light = lightOfVertex(${names.join(', ')}, objectNormal, mat3(to_world));
+  vec4 lobe = lobeInWorld(unpackLobe(${names.join(', ')}, flipped), mat3(to_world));
+  vec3 facing = normalInWorld(objectNormal, mat3(to_world));
+  cloud_light = lightOfVertex(lobe, facing, mat3(to_world));
+  #ifdef SOFT
+    cloud_normal = facing;
+    cloud_place = position;
+  #endif
   cloud_view = isOrthographic ? -vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]) : place - cameraPosition;
 }
 `;
@@ -67,14 +77,34 @@ ${PIXEL_COLOR}
 ${TONE}
 ${CHANNELS}
 uniform vec2 painted_range;  // of depth, while PaintedClouds draws
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+  ${SOFT}
+  ${SOLID_DISTANCE}
+  uniform highp sampler2D solid_depth;
+  uniform vec3 solid_clip;  // near and far plane, and 1.0 if there is such a texture
+#endif
 
 void main() {
   #include <logdepthbuf_fragment>
+  float away = -dot(cloud_view, vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]));
+  float opacity = 1.0;
+  #ifdef SOFT
+    float solid = solid_clip.z > 0.0 ? solidDistance(solid_depth, ivec2(gl_FragCoord.xy), solid_clip.xy) : 1e30;
+    opacity = opacityOfPixel(cloud_normal, cloud_view, cloud_place, away, solid);
+    float threshold = thresholdOfPixel();
+    #ifdef ALPHA_TO_COVERAGE
+      if (threshold == 1.0) discard;
+    #else
+      if (opacity <= threshold) discard;
+      opacity = 1.0;
+    #endif
+  #endif
   if (painted_range.y > painted_range.x) {
-    gl_FragColor = channelsOf(cloud_light, -dot(cloud_view, vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2])), painted_range);
+    gl_FragColor = channelsOf(cloud_light, away, painted_range);
     return;
   }
-  gl_FragColor = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
+  gl_FragColor = vec4(colorOfPixel(cloud_light, cloud_view), opacity);
   ${TO_SCREEN}
   #include <fog_fragment>
   #include <dithering_fragment>
@@ -165,7 +195,8 @@ export class CloudMaterial extends SunlitMaterial {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, volume_gain: { value: 1 }, flipped: { value: 0 },
       own_extinction: { value: 1 }, to_mesh: { value: new Matrix3() } };
-    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() },
+    const soft = Object.fromEntries([...Object.keys(softValues({})), 'solid_depth', 'solid_clip'].map(name => [name, { value: null }]));
+    super({ ...colors, ...numbers, ...soft, shape: { value: new Vector2() }, phase: { value: new Vector3() },
       painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
     this.isCloudMaterial = true;
@@ -196,11 +227,27 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
+  get soft() { return 'SOFT' in this.defines; }
+  set soft(is_soft) {
+    if (is_soft === this.soft) return;
+    if (is_soft) this.defines.SOFT = '';
+    else delete this.defines.SOFT;
+    this.needsUpdate = true;
+  }
+
   onBeforeRender(...given) {
-    const { to_mesh } = this.uniforms, [, , , , mesh] = given;
+    const { to_mesh } = this.uniforms, [, , { near, far }, , mesh] = given;
     if (mesh.userData.cloudToMesh) to_mesh.value.fromArray(mesh.userData.cloudToMesh);
     else to_mesh.value.identity();
+    if (this.soft) this.writeSoft(mesh.userData.cloudShown, near, far);
     super.onBeforeRender();
+  }
+
+  writeSoft(shown, near, far) {
+    const depth = this.painted ? null : this.depthTexture;
+    for (const [name, value] of Object.entries(softValues(this, this.painted, shown))) this.uniforms[name].value = value;
+    this.uniforms.solid_depth.value = depth;
+    this.uniforms.solid_clip.value = [near, far, depth ? 1 : 0];
   }
 
   writeUniforms() {
@@ -223,11 +270,13 @@ export class CloudMaterial extends SunlitMaterial {
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
     const own = ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume', 'harmonicOrder',
-      'harmonicExtinction'];
+      'harmonicExtinction', 'rimFrequency', 'rimScroll', 'depthTexture', ...SOFT_NAMES, 'soft'];
     for (const key of own) this[key] = source[key];
     return this;
   }
 }
+
+addSoftSettings(CloudMaterial);
 
 // For a mesh that covers the screen, such as CloudSky, and cameras with perspective.
 export class SkyMaterial extends SunlitMaterial {
