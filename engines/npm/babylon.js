@@ -112,10 +112,11 @@ precision highp float;
 attribute vec3 position;
 uniform mat4 view;
 uniform mat4 projection;
+uniform float largest_depth;
 varying vec3 sky_view;
 
 void main() {
-  gl_Position = vec4(position.xy, 1.0, 1.0);
+  gl_Position = vec4(position.xy, largest_depth, 1.0);
   sky_view = transpose(mat3(view)) * (inverse(projection) * vec4(position.xy, 0.0, 1.0)).xyz;
 }
 `;
@@ -246,7 +247,7 @@ addSoftSettings(CloudMaterial);
 export class SkyMaterial extends SunlitMaterial {
   constructor(name, scene, parameters = {}) {
     super(name, scene, SKY_VERTEX, SKY_FRAGMENT, {
-      attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', ...Object.values(SKY), 'sun_color'],
+      attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', ...Object.values(SKY), 'sun_color', 'largest_depth'],
     });
     this.backFaceCulling = false;
     Object.assign(this, skyDefaults(colorOf), parameters);
@@ -257,6 +258,7 @@ export class SkyMaterial extends SunlitMaterial {
   writeUniforms() {
     for (const [name, uniform] of Object.entries(SKY)) this.setColor3(uniform, this[name]);
     this.setColor3('sun_color', this.sunColor);
+    this.setFloat('largest_depth', this.getScene().getEngine().useReverseDepthBuffer ? -1 : 1);
   }
 }
 

@@ -98,10 +98,18 @@ export class PaintedClouds {
     this.post.updateEffect(name === 'cloudbake' ? '#define OWN_TONE' : '');
   }
 
-  // Whether all shaders are compiled. Until then pictures are black.
+  // Whether all shaders are compiled. Until then pictures are black, or have no clouds.
   isReady() {
+    return this.canPaint() && this.findClouds().every(mesh => mesh.isReady(true));
+  }
+
+  canPaint() {
     const effects = [...Object.values(this.steps).map(({ wrapper }) => wrapper.effect), this.post.getEffect()];
     return effects.every(effect => effect?.isReady());
+  }
+
+  findClouds() {
+    return this.scene.meshes.filter(mesh => mesh.material instanceof CloudMaterial && mesh.isEnabled() && mesh.isVisible);
   }
 
   dispose() {
@@ -150,11 +158,11 @@ export class PaintedClouds {
   // The clouds are left out of the picture before the post-process.
   begin() {
     this.makeImages();
-    for (const mesh of this.scene.meshes)
-      if (mesh.material instanceof CloudMaterial && mesh.isEnabled() && mesh.isVisible && mesh.layerMask & this.camera.layerMask) {
-        this.masks.set(mesh, mesh.layerMask);
-        mesh.layerMask = 0;
-      }
+    for (const mesh of this.findClouds().filter(({ layerMask }) => layerMask & this.camera.layerMask)) {
+      this.masks.set(mesh, mesh.layerMask);
+      mesh.layerMask = 0;
+      if (this.nearFade[1] > 0) mesh.material.soft = true;
+    }
   }
 
   end() {
@@ -163,7 +171,7 @@ export class PaintedClouds {
   }
 
   paint() {
-    if (!this.isReady()) return;
+    if (!this.canPaint()) return;
     const { engine } = this, meshes = [...this.masks.keys()], view = this.viewOf(meshes), fill = this.fill.bind(this);
     if (meshes.length) this.size ??= sizeOf(meshes);
     engine.setAlphaMode(Constants.ALPHA_DISABLE);
@@ -194,10 +202,7 @@ export class PaintedClouds {
     const painted = { depthRange: this.values.depth_range, place: [(1 - 2 * x) / width, (2 * y - 1) / height], halfLambert, volumeGain,
       nearFade, shift };
     const materials = new Set(meshes.map(({ material }) => material));
-    for (const material of materials) {
-      material.painted = painted;
-      if (nearFade[1] > 0) material.soft = true;
-    }
+    for (const material of materials) material.painted = painted;
     list.renderList = meshes;
     scene.incrementRenderId();
     list.render();

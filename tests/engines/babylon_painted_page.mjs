@@ -23,11 +23,10 @@ function paintedFor({ scene }, eye, { colors }, { exact = true, ...settings } = 
 // Renders until everything is compiled, and once more.
 async function drawReady(scene, painted) {
   await scene.whenReadyAsync();
-  for (let ready = false; !ready;) {
-    ready = painted.isReady();
+  do {
     scene.render();
     await new Promise(done => requestAnimationFrame(done));
-  }
+  } while (!painted.isReady());
 }
 
 // The settings that a look has without any, by the names of painted.mjs.
@@ -42,6 +41,7 @@ async function painted(subject, view, settings, eye = prepare(subject, view)) {
   for (const mesh of meshes) Object.assign(mesh, { isVisible: clouds, alwaysSelectAsActiveMesh: !culled });
   if (naive) ShaderStore.ShadersStore.cloudbakeCompositePixelShader = naiveOf(right);
   const look = paintedFor(subject, eye, view, own);
+  eye.getProjectionMatrix(true);
   await drawReady(scene, look);
   scene.render();
   const values = canvasOf(view.size);
@@ -78,8 +78,8 @@ export async function paintBall(subject, view, share, options) {
   return shown;
 }
 
-export async function paintBetween(subject, view, all) {
-  const ball = ballOf(subject, 0.35 * view.camera.distance / 3, view.camera.at), shown = [];
+export async function paintBefore(subject, view, all) {
+  const { at, from, distance } = view.camera, ball = ballOf(subject, 0.05 * distance, at.map((x, i) => 0.5 * (x + from[i]))), shown = [];
   for (const { clouds = true, ...settings } of all) shown.push(await painted(subject, { ...view, clouds }, settings));
   ball.dispose();
   return shown;
@@ -87,7 +87,8 @@ export async function paintBetween(subject, view, all) {
 
 export async function paintCut(subject, view, settings) {
   const box = CreateBox('floor', { width: 8, height: 0.01, depth: 8 }, subject.scene);
-  const floor = coloured(subject, box, [0.014, 0.03, 0.05], inScene(subject, view.camera.at)), shown = await painted(subject, view, settings);
+  const floor = coloured(subject, box, [1, 0, 0], inScene(subject, view.camera.at));
+  const shown = await painted(subject, view, settings);
   floor.dispose();
   return shown;
 }

@@ -87,10 +87,10 @@ export function paintBall(subject, view, share, options) {
 
 const redBall = radius => new Mesh(new SphereGeometry(radius), new MeshBasicMaterial({ color: 0xff0000 }));
 
-// A ball in the middle of the three clouds, by several settings; `naive`: the mean of the depths of four texels hides or shows a cloud.
-export function paintBetween(subject, view, all) {
-  const eye = prepare(subject, view), ball = redBall(0.35 * view.camera.distance / 3);
-  ball.position.set(...view.camera.at);
+// A ball before the cloud, by several settings; `naive`: with the composite of naive.mjs.
+export function paintBefore(subject, view, all) {
+  const eye = prepare(subject, view), ball = redBall(0.05 * view.camera.distance);
+  ball.position.set(...view.camera.from).lerp(new Vector3(...view.camera.at), 0.5);
   subject.scene.add(ball);
   const shown = all.map(({ naive, clouds = true, ...settings }) => {
     const pass = passFor(subject, eye, view, settings), { composite } = pass.steps;
@@ -103,9 +103,9 @@ export function paintBetween(subject, view, all) {
   return shown;
 }
 
-// A grey floor through the middle of the cloud.
+// A red floor through the middle of the cloud.
 export function paintCut(subject, view, settings) {
-  const floor = new Mesh(new BoxGeometry(8, 0.01, 8), new MeshBasicMaterial({ color: 0x203040 }));
+  const floor = new Mesh(new BoxGeometry(8, 0.01, 8), new MeshBasicMaterial({ color: 0xff0000 }));
   floor.position.set(...view.camera.at);
   subject.scene.add(floor);
   const shown = paint(subject, view, settings);
