@@ -1,23 +1,23 @@
 // What the painted looks for three.js and Babylon.js share: the settings, and the steps with their values. Each engine draws samples of the
 // clouds, and fills its images: `fill(target, step, values)` writes every pixel of an image by a step of painted_shaders.js, where images
 // are given by their names.
-import { DAY } from './asset.js';
 
 // The images of four floats. The first one also needs depth for the clouds that are drawn to it.
 export const IMAGES = ['sample', 'rows', 'boxes', 'drawn', 'even', 'odd'];
 
-// Those settings that are groups.
+// Those settings that are groups. `cloudbake shader npm --scene` fills in those of a scene.
 const GROUPS = {
-  softening: { near: 0.008, far: 0.001 },
-  swirl: { tileSize: 0.4, farTiles: 4, strength: 0.008, farStrength: 0.25, speed: 0.1, nearDrift: [1, 0], farDrift: [0.5, 0],
-    dark: 1, seed: 0 },
-  erosion: { shrink: 0.75, darkening: 0.3, cell: 0.045, seed: 0 },
-  phase: { share: 0.45, asymmetry: 0.7, limit: 6 },
+  softening: { near: @chain_near_width@, far: @chain_far_width@ },
+  swirl: { tileSize: @chain_tile_size@, farTiles: @chain_far_tiles@, strength: @chain_swirl_strength@,
+    farStrength: @chain_far_strength@, speed: @chain_swirl_speed@, nearDrift: [@chain_near_drift@],
+    farDrift: [@chain_far_drift@], dark: @chain_dark@, seed: @chain_seed@ },
+  erosion: { shrink: @chain_detail_shrink@, darkening: @chain_detail_darkening@, cell: @chain_detail_size@, seed: @chain_seed@ },
+  phase: { share: @light_phase@, asymmetry: @light_phase_asymmetry@, limit: @light_phase_limit@ },
 };
 
-const SWIRL_NOISE = { octaves: 2, gain: 0.4, cells: 4, typical_slope: 2 };
-const EROSION_NOISE = { octaves: 4, gain: 0.6, fading: [0.15, 0.5] };
-const FAR_SIZES = 10;  // the depth is 1 at so many sizes of the clouds
+const SWIRL_NOISE = { octaves: @swirl_octaves@, gain: @swirl_gain@, cells: @swirl_cells@, typical_slope: @swirl_slope@ };
+const EROSION_NOISE = { octaves: @erosion_octaves@, gain: @erosion_gain@, fading: [@erosion_fading@] };
+const FAR_SIZES = @far_sizes@;  // the depth is 1 at so many sizes of the clouds
 
 // The samples of a pixel, from its upper left corner.
 const placesOf = side => Array.from({ length: side * side }, (_, i) => {
@@ -40,9 +40,11 @@ function driftAt(time, { speed, nearDrift, farDrift, farTiles }) {
 // The settings, of groups what differs from these. `colorOf` makes a colour of the engine from three numbers.
 export function paintedDefaults({ phase, softening, swirl, erosion, ...others }, colorOf) {
   return {
-    time: 0, resolution: 1, samplesPerSide: 2, halfLambert: 0.3, volumeGain: 1.4, depthSpread: 0.03, size: null, nearDistance: 0,
-    farDistance: null, softDistance: 0, nearFade: [0, 0], farFade: [0, 0], exposure: 1, fogDensity: 0.1, distanceFog: 0,
-    fogColor: colorOf(DAY.horizon), phase: { ...GROUPS.phase, ...phase }, softening: { ...GROUPS.softening, ...softening },
+    time: 0, resolution: 1, samplesPerSide: 2, halfLambert: @light_half_lambert@, volumeGain: @light_volume_gain@,
+    depthSpread: @chain_depth_spread@, size: null, nearDistance: @chain_near_distance@, farDistance: @chain_far_distance@ || null,
+    softDistance: 0, nearFade: [0, 0], farFade: [0, 0], exposure: @picture_exposure@, fogDensity: @fog_density@,
+    distanceFog: @fog_per_unit@, fogColor: colorOf([@fog_color@]),
+    phase: { ...GROUPS.phase, ...phase }, softening: { ...GROUPS.softening, ...softening },
     swirl: { ...GROUPS.swirl, ...swirl }, erosion: { ...GROUPS.erosion, ...erosion }, ...others,
   };
 }

@@ -22,7 +22,7 @@ export interface Sun<Vector, Light, Color> {
 }
 
 /** The lobes, and how they are lit. */
-export interface Lobes<Color, Depth> {
+export interface Lobes<Color, Depth, Lamp> {
   ambientSky: Color;
   ambientGround: Color;
   /** k of the lobes. */
@@ -37,15 +37,19 @@ export interface Lobes<Color, Depth> {
   /** Whether the lobes were fitted to the volume: PaintedClouds makes their sunlight brighter. */
   ofVolume: boolean;
   /**
-   * The soft look, which needs no passes after the clouds. |cosine| of the angle between surface and view where the surface begins and
-   * where it is whole: 0 and 0.4 make soft rims.
+   * The soft look, which needs no passes after the clouds: |cosine| of the angle between surface and view where the surface begins and
+   * where it is whole. 0 and 0.4 make soft rims; 0 and 0 are hard. Draw both sides of the triangles, since rims let the inside show.
    */
   rimStart: number;
   rimEnd: number;
+  /** A factor of the light on that inside. */
+  insideLight: number;
   /** Of the noise that wears rims away: its cells per unit of the mesh. */
   rimFrequency: number;
   /** How many cells the noise has moved along the axes of the mesh. Add to it in every frame, and rims drift. */
   rimScroll: [number, number, number];
+  /** 0 to less than 1, added to the thresholds by which pixels are left out: another one in every frame for temporal antialiasing. */
+  ditherShift: number;
   /** A cloud fades over this distance before what `depthTexture` shows; world units. */
   softDistance: number;
   /** The depth of what is solid, of the size of the picture, or null. */
@@ -61,6 +65,11 @@ export interface Lobes<Color, Depth> {
   soft: boolean;
   /** Whether an importer stored 1 - v. The glTF loaders do not. */
   flipV: boolean;
+  /**
+   * Point lights and spotlights of the engine. A lamp gives its colour times its intensity at distance 1, less with the square of the
+   * distance, and the lobes shade it. Not in the painted look.
+   */
+  lamps: Lamp[];
 }
 
 /** The colours of the sky. */
@@ -163,3 +172,18 @@ export type PaintedParameters<S> = {
     ? Partial<S[K]> : S[K]
 };
 
+
+/** The frame of a shadow's picture: the JSON that `cloudbake shadow` writes. Vectors in the axes of glTF, lengths world units. */
+export interface ShadowFrame {
+  /** The centre of the picture. */
+  origin: [number, number, number];
+  /** Unit vectors along its rows and columns, and to the sun. */
+  right: [number, number, number];
+  up: [number, number, number];
+  to_sun: [number, number, number];
+  width: number;
+  height: number;
+  /** Of the cloud, from the origin along to_sun: below the bottom all of the shadow counts, above the top none. */
+  top?: number;
+  bottom?: number;
+}

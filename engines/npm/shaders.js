@@ -61,12 +61,41 @@ vec3 colorOfPixel(vec2 light, vec3 view) {
 }
 `;
 
+// The light of LAMPS lamps.
+export const LAMPS = `
+#include "lamp.glsl"
+uniform Lamp lamps[LAMPS];
+
+// What a vertex shows of it, by its lobe, its place and its normal in the world.
+vec3 lampsOfVertex(vec4 lobe, vec3 place, vec3 normal) {
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < LAMPS; i++) {
+    sum += lampLight(lamps[i], lobe, place, normal, half_lambert, shape, extinction);
+  }
+  return sum;
+}
+`;
+
+// The picture of `cloudbake shadow` on other things.
+export const CAST_SHADOW = `
+#include "cast_shadow.glsl"
+uniform highp sampler2D cloud_shadow;
+uniform vec3 shadow_origin, shadow_right, shadow_up, shadow_to_sun;  // right and up: over width and height
+uniform vec3 shadow_share;  // strength, and top and bottom of the cloud from the origin along shadow_to_sun
+
+float castShadow(vec3 place) {
+  vec2 at = shadowPlace(place, shadow_origin, shadow_right, shadow_up);
+  float depth = shadowDepth(place, shadow_origin, shadow_to_sun, shadow_share.y, shadow_share.z);
+  return shadowFactor(texture(cloud_shadow, at).r, at, shadow_share.x * depth);
+}
+`;
+
 // Rims, fades and levels, for materials that are `soft`.
 export const SOFT = `
 #include "noise.glsl"
 #include "soft.glsl"
 uniform vec2 rim, near_fade, far_fade, shown;  // shown: the thresholds by which this level is drawn
-uniform float rim_frequency, soft_distance, dither_shift;
+uniform float rim_frequency, soft_distance, dither_shift, inside_light;
 uniform vec3 rim_scroll;
 
 // How opaque a pixel is. 'view' leads from the eye to it, 'away' is its distance along the view's axis and 'solid' that of something solid.
@@ -77,6 +106,11 @@ float opacityOfPixel(vec3 normal, vec3 view, vec3 own_place, float away, float s
     return opacity;
   }
   return opacity * rimOpacity(abs(dot(normalize(normal), normalize(view))), rimNoise(own_place, rim_frequency, rim_scroll), rim);
+}
+
+// A factor of the light of what rims let show: the inside of the far surface.
+float insideFactor(vec3 normal, vec3 view) {
+  return rim.x != rim.y && dot(normal, view) > 0.0 ? inside_light : 1.0;
 }
 
 // The threshold of a pixel; 1.0 where another level is drawn.

@@ -99,6 +99,7 @@ export class PaintedClouds extends Pass {
 
   findClouds() {
     const meshes = [];
+    this.scene.traverseVisible(object => { if (object.isCloudLevels) object.update(this.camera); });
     this.scene.traverseVisible(object => {
       if (object.material?.isCloudMaterial && object.material.visible && object.layers.test(this.camera.layers)) meshes.push(object);
     });

@@ -15,7 +15,7 @@ import { CloudMaterial, SkyMaterial, cloudMaterialOf, createCloudSky } from 'clo
 export const colorOf = array => new Color3(...array);
 
 let engine;
-function engineOf([width, height]) {
+export function engineOf([width, height]) {
   if (!engine) {
     const canvas = document.createElement('canvas');
     document.body.append(canvas);
@@ -95,12 +95,13 @@ export async function draw(subject, view) {
   scene.render();  // makes what the target needs
   await scene.whenReadyAsync();
   const projection = eye.getProjectionMatrix(true).clone();
-  for (const [x, y] of places) {
+  for (const [i, [x, y]] of places.entries()) {
+    if (subject.material) subject.material.ditherShift = i / places.length;
     eye.freezeProjectionMatrix(projection.multiply(Matrix.Translation(-2 * (x - 0.5) / width, 2 * (y - 0.5) / height, 0)));
     scene.render();
     const read = await target.readPixels();
-    for (let i = 0; i < sum.length; ++i)
-      sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
+    for (let v = 0; v < sum.length; ++v)
+      sum[v] += read[4 * (width * (height - 1 - Math.floor(v / 3 / width)) + Math.floor(v / 3) % width) + v % 3] / places.length;
   }
   eye.unfreezeProjectionMatrix();
   eye.outputRenderTarget = null;
