@@ -6,17 +6,17 @@ export const DEFAULTS = {
   uvSets: [@first_set@, @second_set@],
 };
 
-// The light and the sky of a day, linear. `phase` has no effect until its share is over 0.
+// The light and the sky of a day, or of a scene, linear. `phase` has no effect until its share is over 0.
 export const DAY = {
-  sunDirection: [0.8365163, 0.5, -0.2241439],
-  sunColor: [1.1, 0.973, 0.797],
-  ambientSky: [0.101, 0.189, 0.41],
-  ambientGround: [0.0434, 0.0717, 0.127],
-  phase: { share: 0, asymmetry: 0.7, limit: 6 },
-  zenith: [0.0107, 0.02, 0.0942],
-  lowSky: [0.134, 0.25, 1.1],
-  horizon: [1.63, 1.83, 1.98],
-  ground: [0.148, 0.293, 0.529],
+  sunDirection: [@sun_direction@],
+  sunColor: [@sky_colors_sun@],
+  ambientSky: [@sky_colors_ambient_sky@],
+  ambientGround: [@sky_colors_ambient_ground@],
+  phase: { share: 0, asymmetry: @light_phase_asymmetry@, limit: @light_phase_limit@ },
+  zenith: [@sky_colors_zenith@],
+  lowSky: [@sky_colors_low_sky@],
+  horizon: [@sky_colors_horizon@],
+  ground: [@sky_colors_ground@],
 };
 
 // The settings of a material that is given none. `colorOf` makes a colour of the engine from three numbers.
@@ -27,6 +27,7 @@ export const skyDefaults = colorOf => Object.fromEntries(Object.keys(SKY).map(na
 export const cloudDefaults = colorOf => ({
   ...DEFAULTS, ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), halfLambert: 0.5, phase: {}, flipV: false,
   ofVolume: false, harmonicOrder: 0, harmonicExtinction: DEFAULTS.extinction,
+  rimFrequency: 8, rimScroll: [0, 0, 0], insideLight: 0.7, ditherShift: 0, depthTexture: null, lamps: [],
 });
 
 // A number of the asset. Shaders have 32 bits for it, JSON has more.
@@ -60,3 +61,40 @@ export function settingsOf(json) {
     harmonicExtinction: extinction,
   };
 }
+
+// The most pixels that the longest side of the full asset may cover where a file of a level (`bake --lods`) is drawn; 0 for the full asset.
+export const switchPixelsOf = json => json.asset?.extras?.cloudbake?.switch_pixels ?? 0;
+
+// The frame of a shadow's picture, from the JSON beside it: the values of the uniforms that shaders.js names.
+export function shadowValues({ origin, right, up, to_sun, width, height, top = 0, bottom = 0 }, strength) {
+  return { shadow_origin: origin, shadow_right: right.map(x => x / width), shadow_up: up.map(x => x / height), shadow_to_sun: to_sun,
+    shadow_share: [strength, top, bottom] };
+}
+
+// The settings of the soft look, which a material has without passes after the clouds, when each is off.
+const SOFT = { rimStart: 0, rimEnd: 0, softDistance: 0, nearFade: [0, 0], farFade: [0, 0] };
+
+// Gives them to a class of materials. A material becomes `soft` by the first one that is not off: only then its shader leaves out pixels,
+// which costs graphics cards the early test of depth.
+export function addSoftSettings(Material) {
+  for (const [name, off] of Object.entries(SOFT))
+    Object.defineProperty(Material.prototype, name, {
+      get() { return this.softSettings?.[name] ?? off; },
+      set(value) {
+        this.softSettings = { ...this.softSettings, [name]: value };
+        if (String(value) !== String(off)) this.soft = true;
+      },
+    });
+}
+export const SOFT_NAMES = Object.keys(SOFT);
+
+// The uniforms of the soft look. `painted`: what the painted look needs while it draws, or null. `shown`: from and to which threshold the
+// mesh is drawn.
+export const softValues = (material, painted, shown = [0, 1]) => ({
+  rim: painted ? [0, 0] : [material.rimStart, material.rimEnd],
+  near_fade: painted ? painted.nearFade : material.nearFade,
+  far_fade: painted ? [0, 0] : material.farFade,
+  soft_distance: painted ? 0 : material.softDistance,
+  rim_frequency: material.rimFrequency, rim_scroll: material.rimScroll, inside_light: material.insideLight,
+  dither_shift: painted ? painted.shift : material.ditherShift, shown,
+});

@@ -1,11 +1,17 @@
 import type { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
+import type { BaseTexture } from '@babylonjs/core/Materials/Textures/baseTexture.js';
 import type { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
+import type { PointLight } from '@babylonjs/core/Lights/pointLight.js';
+import type { SpotLight } from '@babylonjs/core/Lights/spotLight.js';
 import type { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import type { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import type { AbstractMesh } from '@babylonjs/core/Meshes/abstractMesh.js';
 import type { Mesh } from '@babylonjs/core/Meshes/mesh.js';
+import type { AssetContainer } from '@babylonjs/core/assetContainer.js';
+import type { Camera } from '@babylonjs/core/Cameras/camera.js';
+import type { Material } from '@babylonjs/core/Materials/material.js';
 import type { Scene } from '@babylonjs/core/scene.js';
-import type { Lobes, Phase, SkyColors, Sun } from './settings.js';
+import type { Lobes, Phase, ShadowFrame, SkyColors, Sun } from './settings.js';
 
 export type { Phase };
 
@@ -21,7 +27,7 @@ export interface SunlitSettings extends Sun<Vector3, DirectionalLight, Color3> {
   tone: 'cloudbake' | 'linear';
 }
 
-export interface CloudSettings extends SunlitSettings, Lobes<Color3> {}
+export interface CloudSettings extends SunlitSettings, Lobes<Color3, BaseTexture, PointLight | SpotLight> {}
 
 export interface SkySettings extends SunlitSettings, SkyColors<Color3> {}
 
@@ -51,3 +57,28 @@ export function createCloudSky(scene: Scene, material?: SkyMaterial): Mesh;
 
 /** The CloudMaterial that the loader extension gave to a file's meshes, or null if cloudbake did not bake it. */
 export function cloudMaterialOf(meshes: readonly AbstractMesh[]): CloudMaterial | null;
+
+/**
+ * The levels of detail of a cloud (`cloudbake bake --lods`), from the containers of their files, the full asset first. They switch by the
+ * size on the screen, as `cloudbake preview` does.
+ */
+export class CloudLevels {
+  constructor(containers: readonly AssetContainer[], scene: Scene, settings?: { switchBand?: number });
+  /** The share of the size over which two levels share the pixels; 0: they switch at once. */
+  switchBand: number;
+  /** The scene calls it before a camera draws. */
+  update(camera: Camera): void;
+  dispose(): void;
+}
+
+/** The shadow of a cloud on other things, from the picture that `cloudbake shadow` wrote and the JSON beside it. */
+export class CloudShadow {
+  constructor(texture: BaseTexture, frame: ShadowFrame, strength?: number);
+  /** Loads shadow.png, and shadow.json beside it. */
+  static load(picture: string, scene: Scene, strength?: number): Promise<CloudShadow>;
+  frame: ShadowFrame;
+  /** 0: no shadow, 1: all of it. */
+  shadowStrength: number;
+  /** Gives the shadow to a StandardMaterial or a PBRMaterial: its direct light is darkened. */
+  darken<M extends Material>(material: M): M;
+}

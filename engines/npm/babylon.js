@@ -13,20 +13,26 @@ import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertexGlobal.js';
 import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertexGlobalDeclaration.js';
 import { VertexBuffer } from '@babylonjs/core/Buffers/buffer.js';
 import { Camera } from '@babylonjs/core/Cameras/camera.js';
+import { Constants } from '@babylonjs/core/Engines/constants.js';
+import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
 import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
+import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector2, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
-import { DAY, DEFAULTS, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
-import { PIXEL_COLOR, SKY_COLOR, TONE, vertexLight } from './shaders.js';
+import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, settingsOf, shadowValues, skyDefaults, softValues, sunDefaults,
+  switchPixelsOf } from './asset.js';
+import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
+import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, vertexLight } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? VertexBuffer.UVKind : `${VertexBuffer.UVKind}${n + 1}`;
 
 const cloudVertex = names => `
 precision highp float;
+precision highp int;
 attribute vec3 position;
 attribute vec3 normal;
 ${names.map(name => `attribute vec2 ${name};`).join('\n')}
@@ -39,9 +45,17 @@ uniform float is_perspective;
 #include<morphTargetsVertexGlobalDeclaration>
 #include<morphTargetsVertexDeclaration>[0..maxSimultaneousMorphTargets]
 #include<fogVertexDeclaration>
+uniform vec2 painted_place;  // of a sample in its pixel, on the screen, while PaintedClouds draws
 varying vec2 cloud_light;
 varying vec3 cloud_view;
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+#endif
 ${vertexLight()}
+#ifdef LAMPS
+  varying vec3 cloud_lamps;
+  ${LAMPS}
+#endif
 void main() {
   vec3 positionUpdated = position;
   vec3 normalUpdated = normal;
@@ -51,7 +65,17 @@ void main() {
   #include<bonesVertex>
   vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);
   gl_Position = viewProjection * worldPos;
-  cloud_light = lightOfVertex(${names.join(', ')}, normalUpdated, mat3(finalWorld));
+  gl_Position.xy += painted_place * gl_Position.w;
+  vec4 lobe = lobeInWorld(unpackLobe(${names.join(', ')}, flipped), mat3(finalWorld));
+  vec3 facing = normalInWorld(normalUpdated, mat3(finalWorld));
+  cloud_light = lightOfVertex(lobe, facing, mat3(finalWorld));
+  #ifdef SOFT
+    cloud_normal = facing;
+    cloud_place = position;
+  #endif
+  #ifdef LAMPS
+    cloud_lamps = lampsOfVertex(lobe, worldPos.xyz, facing);
+  #endif
   cloud_view = worldPos.xyz * is_perspective - eye;
   #include<fogVertex>
 }
@@ -65,13 +89,40 @@ const TO_SCREEN = `
 
 const CLOUD_FRAGMENT = `
 precision highp float;
+precision highp int;
 #include<fogFragmentDeclaration>
 varying vec2 cloud_light;
 varying vec3 cloud_view;
 ${PIXEL_COLOR}
 ${TONE}
+${CHANNELS}
+uniform vec2 painted_range;  // of depth, while PaintedClouds draws
+uniform vec3 forward;
+#ifdef LAMPS
+  varying vec3 cloud_lamps;
+#endif
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+  ${SOFT}
+  uniform float has_solid;
+  uniform highp sampler2D solid_depth;  // distances along the view's axis
+#endif
 void main() {
-  vec4 color = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
+  float away = dot(cloud_view, forward);
+  vec2 light = cloud_light;
+  #ifdef SOFT
+    light *= insideFactor(cloud_normal, cloud_view);
+    float solid = has_solid > 0.0 ? texelFetch(solid_depth, ivec2(gl_FragCoord.xy), 0).r : 1e30;
+    if (opacityOfPixel(cloud_normal, cloud_view, cloud_place, away, solid) <= thresholdOfPixel()) discard;
+  #endif
+  if (painted_range.y > painted_range.x) {
+    gl_FragColor = channelsOf(cloud_light, away, painted_range);
+    return;
+  }
+  vec4 color = vec4(colorOfPixel(light, cloud_view), 1.0);
+  #ifdef LAMPS
+    color.rgb += cloud_lamps;
+  #endif
   ${TO_SCREEN}
   #include<fogFragment>
   gl_FragColor = color;
@@ -80,19 +131,22 @@ void main() {
 
 const SKY_VERTEX = `
 precision highp float;
+precision highp int;
 attribute vec3 position;
 uniform mat4 view;
 uniform mat4 projection;
+uniform float largest_depth;
 varying vec3 sky_view;
 
 void main() {
-  gl_Position = vec4(position.xy, 1.0, 1.0);
+  gl_Position = vec4(position.xy, largest_depth, 1.0);
   sky_view = transpose(mat3(view)) * (inverse(projection) * vec4(position.xy, 0.0, 1.0)).xyz;
 }
 `;
 
 const SKY_FRAGMENT = `
 precision highp float;
+precision highp int;
 varying vec3 sky_view;
 ${SKY_COLOR}
 ${TONE}
@@ -103,7 +157,16 @@ void main() {
 }
 `;
 
+// The unit vector along which a camera looks, in the world.
+export function forwardOf(camera) {
+  const { m } = camera.getViewMatrix();
+  return new Vector3(m[2], m[6], m[10]).scale(camera.getScene().useRightHandedSystem ? -1 : 1);
+}
+
 const colorOf = rgb => Color3.FromArray(rgb);
+
+// Babylon.js takes a semicolon of a comment for the end of a line.
+const withoutComments = shader => shader.replace(/ *\/\/.*$/gm, '');
 
 /** @typedef {import('./babylon.d.ts').CloudSettings} Settings */
 
@@ -114,7 +177,7 @@ class SunlitMaterial extends ShaderMaterial {
   /** @type {Settings['exposure']} */ exposure;
 
   constructor(name, scene, vertexSource, fragmentSource, options) {
-    super(name, scene, { vertexSource, fragmentSource }, options);
+    super(name, scene, { vertexSource: withoutComments(vertexSource), fragmentSource: withoutComments(fragmentSource) }, options);
     this.sunDirection = Vector3.FromArray(DAY.sunDirection);
     Object.assign(this, sunDefaults(colorOf));
     this.tone = 'cloudbake';
@@ -139,6 +202,21 @@ class SunlitMaterial extends ShaderMaterial {
   }
 }
 
+// What sets each field of a lamp of lamp.glsl.
+const LAMP_SETTERS = { place: 'setVector3', color: 'setColor3', range: 'setFloat', radius: 'setFloat', axis: 'setVector3',
+  cone: 'setVector2' };
+
+// A PointLight or a SpotLight as such a lamp.
+function lampOf(light) {
+  light.computeTransformedInformation();
+  const { diffuse, intensity, range, angle, innerAngle = 0 } = light;
+  return {
+    place: light.getAbsolutePosition(), color: diffuse.scale(intensity), range: range < Number.MAX_VALUE ? range : 0,
+    radius: light.radius, axis: (light.transformedDirection ?? light.direction ?? Vector3.Zero()).normalizeToNew(),
+    cone: angle === undefined ? new Vector2(-1, -1) : new Vector2(Math.cos(innerAngle / 2), Math.cos(angle / 2)),
+  };
+}
+
 export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['ambientSky']} */ ambientSky;
   /** @type {Settings['ambientGround']} */ ambientGround;
@@ -147,6 +225,9 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['extinction']} */ extinction;
   /** @type {Settings['halfLambert']} */ halfLambert;
   /** @type {Settings['flipV']} */ flipV;
+  /** @type {Settings['ofVolume']} */ ofVolume;
+  /** @type {Settings['depthTexture']} */ depthTexture;
+  painted = null;  // what PaintedClouds needs while it draws
 
   constructor(name, scene, parameters = {}) {
     const { uvSets = DEFAULTS.uvSets, ...others } = parameters, names = uvSets.map(nameOfSet);
@@ -154,7 +235,9 @@ export class CloudMaterial extends SunlitMaterial {
       attributes: ['position', 'normal', ...names], defines: ['NORMAL'],
       uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color',
         'ambient_sky', 'ambient_ground', 'shape', 'extinction',
-        'half_lambert', 'volume_gain', 'flipped', 'phase'],
+        'half_lambert', 'volume_gain', 'flipped', 'phase', 'forward', 'painted_range', 'painted_place', 'has_solid',
+        ...Object.keys(softValues({}))],
+      samplers: ['solid_depth'],
     });
     Object.assign(this, cloudDefaults(colorOf), { uvSets }, others);
   }
@@ -164,27 +247,61 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
+  get lamps() { return this.lights; }
+  set lamps(lights) {
+    const { options } = this, names = Object.keys(LAMP_SETTERS), count = lights.length > 0 ? [`LAMPS ${lights.length}`] : [];
+    options.defines = [...options.defines.filter(word => !word.startsWith('LAMPS')), ...count];
+    options.uniforms = [...options.uniforms.filter(name => !name.startsWith('lamps[')),
+      ...lights.flatMap((_, i) => names.map(name => `lamps[${i}].${name}`))];
+    this.lights = lights;
+  }
+
+  get soft() { return this.options.defines.includes('SOFT'); }
+  set soft(is_soft) { this.options.defines = [...this.options.defines.filter(word => word !== 'SOFT'), ...is_soft ? ['SOFT'] : []]; }
+
+  bind(world, mesh, effectOverride, subMesh) {
+    super.bind(world, mesh, effectOverride, subMesh);
+    // Meshes that follow each other share the other uniforms.
+    if (this.soft) (effectOverride ?? subMesh?.effect ?? this.getEffect()).setArray2('shown', mesh?.metadata?.cloudShown ?? [0, 1]);
+  }
+
   writeUniforms() {
-    const camera = this.getScene().activeCamera, is_perspective = camera.mode === Camera.PERSPECTIVE_CAMERA;
-    this.setVector3('eye', is_perspective ? camera.globalPosition : camera.getForwardRay().direction.scale(-1));
+    const camera = this.getScene().activeCamera, is_perspective = camera.mode === Camera.PERSPECTIVE_CAMERA, forward = forwardOf(camera);
+    this.setVector3('eye', is_perspective ? camera.globalPosition : forward.scale(-1));
     this.setFloat('is_perspective', is_perspective ? 1 : 0);
     this.setColor3('sun_color', this.sunColor);
     this.setColor3('ambient_sky', this.ambientSky);
     this.setColor3('ambient_ground', this.ambientGround);
     this.setVector2('shape', new Vector2(this.exponent, this.bias));
     this.setFloat('extinction', this.extinction);
-    this.setFloat('half_lambert', this.halfLambert);
-    this.setFloat('volume_gain', 1);  // of the painted look, which Babylon.js does not have
+    this.setFloat('half_lambert', this.painted?.halfLambert ?? this.halfLambert);
+    this.setFloat('volume_gain', this.ofVolume ? this.painted?.volumeGain ?? 1 : 1);
+    this.setVector3('forward', forward);
+    this.setArray2('painted_range', this.painted?.depthRange ?? [0, 0]);
+    this.setArray2('painted_place', this.painted?.place ?? [0, 0]);
+    this.lamps.forEach((light, i) => {
+      for (const [name, value] of Object.entries(lampOf(light))) this[LAMP_SETTERS[name]](`lamps[${i}].${name}`, value);
+    });
+    if (this.soft) this.writeSoft();
     this.setFloat('flipped', this.flipV ? 1 : 0);
     this.setVector3('phase', new Vector3(this.phase.share, this.phase.asymmetry, this.phase.limit));
   }
+
+  writeSoft() {
+    const setters = { 1: 'setFloat', 2: 'setArray2', 3: 'setArray3' }, depth = this.painted ? null : this.depthTexture;
+    for (const [name, value] of Object.entries(softValues(this, this.painted))) this[setters[value.length ?? 1]](name, value);
+    this.setFloat('has_solid', depth ? 1 : 0);
+    if (depth) this.setTexture('solid_depth', depth);
+    else this.removeTexture('solid_depth');
+  }
 }
+addSoftSettings(CloudMaterial);
 
 // For a mesh that covers the screen, which createCloudSky makes, and cameras with perspective.
 export class SkyMaterial extends SunlitMaterial {
   constructor(name, scene, parameters = {}) {
     super(name, scene, SKY_VERTEX, SKY_FRAGMENT, {
-      attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', ...Object.values(SKY), 'sun_color'],
+      attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', ...Object.values(SKY), 'sun_color', 'largest_depth'],
     });
     this.backFaceCulling = false;
     Object.assign(this, skyDefaults(colorOf), parameters);
@@ -195,6 +312,7 @@ export class SkyMaterial extends SunlitMaterial {
   writeUniforms() {
     for (const [name, uniform] of Object.entries(SKY)) this.setColor3(uniform, this[name]);
     this.setColor3('sun_color', this.sunColor);
+    this.setFloat('largest_depth', this.getScene().getEngine().useReverseDepthBuffer ? -1 : 1);
   }
 }
 
@@ -233,11 +351,106 @@ class CloudbakeExtension {
       mesh instanceof Mesh && names.every(name => mesh.isVerticesDataPresent(name)));
     if (!meshes.length) return;
     const material = new CloudMaterial('cloud', babylonScene, settings);
+    material.switchPixels = switchPixelsOf(gltf);
     material.backFaceCulling = meshes.every(mesh => mesh.material?.backFaceCulling ?? true);
     for (const mesh of meshes) {
       if (!mesh.isVerticesDataPresent(VertexBuffer.NormalKind)) mesh.createNormals(false);
       mesh.material = material;
     }
+  }
+}
+
+// The levels of detail of a cloud (`cloudbake bake --lods`), from the containers of their files, the full asset first. They switch by the
+// size on the screen where a camera draws them, as `cloudbake preview` does.
+export class CloudLevels {
+  constructor(containers, scene, { switchBand = 0.3 } = {}) {
+    Object.assign(this, { scene, switchBand });
+    this.levels = containers.map(({ meshes }) => meshes.filter(({ material }) => material instanceof CloudMaterial));
+    for (const mesh of this.levels.flat()) {
+      mesh.material.soft = true;
+      mesh.metadata = { ...mesh.metadata };
+    }
+    this.observer = scene.onBeforeCameraRenderObservable.add(camera => this.update(camera), undefined, true);
+  }
+
+  update(camera) {
+    const boxes = this.levels[0].map(mesh => {
+      mesh.computeWorldMatrix();
+      return mesh.getBoundingInfo().boundingBox;
+    });
+    const corner = (least, name) => ['x', 'y', 'z'].map(axis => least(...boxes.map(box => box[name][axis])));
+    const longest = Math.max(0, ...boxes.map(({ extendSize }, i) =>
+      2 * stretchedSides(extendSize.asArray(), this.levels[0][i].getWorldMatrix().m)));
+    const pixels = pixelsAcross(longest, corner(Math.min, 'minimumWorld'), corner(Math.max, 'maximumWorld'),
+      camera.globalPosition.asArray(), 1 / camera.getProjectionMatrix().m[5], this.scene.getEngine().getRenderHeight());
+    const shown = shownLevels(pixels, this.levels.map(([{ material }]) => material.switchPixels), this.switchBand);
+    this.levels.forEach((meshes, i) => {
+      for (const mesh of meshes) {
+        mesh.isVisible = shown[i] !== null;
+        mesh.metadata.cloudShown = shown[i] ?? [0, 1];
+      }
+    });
+  }
+
+  dispose() { this.scene.onBeforeCameraRenderObservable.remove(this.observer); }
+}
+
+// The shadow of a cloud that `cloudbake shadow` wrote, SHADOW.png, and SHADOW.json with its frame.
+export class CloudShadow {
+  constructor(texture, frame, strength = 1) {
+    Object.assign(this, { texture, frame, shadowStrength: strength });
+    texture.wrapU = texture.wrapV = Constants.TEXTURE_CLAMP_ADDRESSMODE;
+  }
+
+  static async load(picture, scene, strength = 1) {
+    const answer = await fetch(picture.replace(/\.png$/, '.json'));
+    if (!answer.ok) throw new Error(`${picture} has no frame beside it: ${answer.url} answers ${answer.status}; copy both files`);
+    const texture = new Texture(picture, scene, { noMipmap: true });
+    return new CloudShadow(texture, await answer.json(), strength);
+  }
+
+  // A StandardMaterial or a PBRMaterial gets the shadow: its direct light is darkened.
+  darken(material) {
+    this.plugin = new CloudShadowPlugin(material, this);
+    return material;
+  }
+}
+
+// The frame is in the axes of glTF, which a left-handed scene mirrors.
+const SHADOW_UNIFORMS = ['shadow_origin', 'shadow_right', 'shadow_up', 'shadow_to_sun', 'shadow_share', 'shadow_mirror'];
+
+class CloudShadowPlugin extends MaterialPluginBase {
+  constructor(material, shadow) {
+    super(material, 'CloudShadow', 200, { CLOUD_SHADOW: false });
+    this.shadow = shadow;
+    this._enable(true);
+  }
+
+  getClassName() { return 'CloudShadowPlugin'; }
+  prepareDefines(defines) { defines.CLOUD_SHADOW = true; }
+  getSamplers(samplers) { samplers.push('cloud_shadow'); }
+  getUniforms() { return { ubo: [], externalUniforms: SHADOW_UNIFORMS }; }
+
+  bindForSubMesh(buffer, scene, engine, subMesh) {
+    const { effect } = subMesh, { frame, shadowStrength, texture } = this.shadow;
+    for (const [name, value] of Object.entries(shadowValues(frame, shadowStrength))) effect.setFloat3(name, ...value);
+    effect.setFloat3('shadow_mirror', scene.useRightHandedSystem ? 1 : -1, 1, 1);
+    effect.setTexture('cloud_shadow', texture);
+  }
+
+  getCustomCode(type) {
+    if (type !== 'fragment') return null;
+    return {
+      CUSTOM_FRAGMENT_DEFINITIONS: withoutComments(`#ifdef CLOUD_SHADOW\n${CAST_SHADOW}\nuniform vec3 shadow_mirror;\n#endif`),
+      '!aggShadow\\s*=\\s*aggShadow\\s*/\\s*numLights;': `aggShadow = aggShadow / numLights;
+        #ifdef CLOUD_SHADOW
+          float cloud_shade = castShadow(shadow_mirror * vPositionW);
+          diffuseBase *= cloud_shade;
+          #ifdef SPECULARTERM
+            specularBase *= cloud_shade;
+          #endif
+        #endif`,
+    };
   }
 }
 

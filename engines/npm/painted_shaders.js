@@ -36,40 +36,30 @@ export const STEPS = {
 `,
 };
 
-// The clouds over the rest of the scene, in the colours of the screen or of the next pass.
-export const COMPOSITE = `
-#include <packing>
+// The clouds over the rest of the scene, in the colours of the screen or of the next pass. `head` declares the output gl_FragColor, and
+// `float distanceBehind(ivec2 at)`, along the view's axis; `toScreen` are statements for tones of the engine.
+export const compositeOf = ({ head = '', toScreen = '' }) => `
+${head}
 #include "light.glsl"
+#include "noise.glsl"
+#include "soft.glsl"
 #include "view.glsl"
 #include "channel_sum.glsl"
 uniform vec3 to_sun, sun_color, ambient_sky, ambient_ground;
 #include "composite.glsl"
+#include "solid.glsl"
 #include "tone.glsl"
 uniform float exposure;
-uniform highp sampler2D behind, behind_depth;
-uniform vec2 clip;  // near and far plane
-
-float distanceBehind(ivec2 at) {
-  float depth = texelFetch(behind_depth, at, 0).r;
-  #if defined(USE_LOGARITHMIC_DEPTH_BUFFER) || defined(USE_LOGDEPTHBUF)  // the name in older ones
-    return exp2(depth * log2(clip.y + 1.0)) - 1.0;
-  #else
-    return -perspectiveDepthToViewZ(depth, clip.x, clip.y);
-  #endif
-}
+uniform highp sampler2D behind;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  vec3 color = texelFetch(behind, at, 0).rgb;
-  if (distanceOf(channelsAt(channels, at), at) < distanceBehind(at)) {
-    color = withClouds(color, at);
-  }
+  vec3 color = behindClouds(texelFetch(behind, at, 0).rgb, visibleChannels(at, distanceBehind(at)), at);
   gl_FragColor = vec4(color, 1.0);
   #ifdef OWN_TONE
     gl_FragColor.rgb = toneMap(color, exposure) + ditherOffset(ivec2(at.x, int(picture.y) - 1 - at.y));
   #else
-    #include <tonemapping_fragment>
-    #include <colorspace_fragment>
+    ${toScreen}
   #endif
 }
 `;

@@ -32,13 +32,16 @@ float shareOf(vec3 to_light, vec4 lobe, mat3 to_world) {
     : 'lobeTransmittance(lobe, to_light, shape, extinction)'};
 }
 
-// The shares of the light of sun and sky that reach a vertex. The two UV sets and the normal are those of the mesh; to_world places it.
-vec2 lightOfVertex(vec2 first, vec2 second, vec3 own_normal, mat3 to_world) {
-  vec4 lobe = lobeInWorld(unpackLobe(first, second, flipped), to_world);
+// The unit normal in the world, by the matrix that places the mesh.
+vec3 normalInWorld(vec3 own_normal, mat3 to_world) {
   mat3 cofactors = mat3(cross(to_world[1], to_world[2]), cross(to_world[2], to_world[0]), cross(to_world[0], to_world[1]));
   vec3 facing = cofactors * own_normal * sign(dot(to_world[0], cofactors[0]));
   float size = length(facing);
-  facing = size > 0.0 ? facing / size : vec3(0.0);
+  return size > 0.0 ? facing / size : vec3(0.0);
+}
+
+// The shares of the light of sun and sky that reach a vertex, by its lobe and its normal in the world.
+vec2 lightOfVertex(vec4 lobe, vec3 facing, mat3 to_world) {
   float sun = min(volume_gain * shareOf(to_sun, lobe, to_world), 1.0) * surfaceFactor(facing, to_sun, half_lambert);
   return vec2(sun, shareOf(vec3(0.0, 1.0, 0.0), lobe, to_world));
 }
@@ -55,6 +58,65 @@ vec3 colorOfPixel(vec2 light, vec3 view) {
   vec2 shares = clamp(light, 0.0, 1.0);
   float factor = phaseFactor(normalize(view), to_sun, phase.x, phase.y, phase.z);
   return cloudColor(shares.x, shares.y, sun_color * factor, ambient_sky, ambient_ground);
+}
+`;
+
+// The light of LAMPS lamps.
+export const LAMPS = `
+#include "lamp.glsl"
+uniform Lamp lamps[LAMPS];
+
+// What a vertex shows of it, by its lobe, its place and its normal in the world.
+vec3 lampsOfVertex(vec4 lobe, vec3 place, vec3 normal) {
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < LAMPS; i++) {
+    sum += lampLight(lamps[i], lobe, place, normal, half_lambert, shape, extinction);
+  }
+  return sum;
+}
+`;
+
+// The picture of `cloudbake shadow` on other things.
+export const CAST_SHADOW = `
+#include "cast_shadow.glsl"
+uniform highp sampler2D cloud_shadow;
+uniform vec3 shadow_origin, shadow_right, shadow_up, shadow_to_sun;  // right and up: over width and height
+uniform vec3 shadow_share;  // strength, and top and bottom of the cloud from the origin along shadow_to_sun
+
+float castShadow(vec3 place) {
+  vec2 at = shadowPlace(place, shadow_origin, shadow_right, shadow_up);
+  float depth = shadowDepth(place, shadow_origin, shadow_to_sun, shadow_share.y, shadow_share.z);
+  return shadowFactor(texture(cloud_shadow, at).r, at, shadow_share.x * depth);
+}
+`;
+
+// Rims, fades and levels, for materials that are `soft`.
+export const SOFT = `
+#include "noise.glsl"
+#include "soft.glsl"
+uniform vec2 rim, near_fade, far_fade, shown;  // shown: the thresholds by which this level is drawn
+uniform float rim_frequency, soft_distance, dither_shift, inside_light;
+uniform vec3 rim_scroll;
+
+// How opaque a pixel is. 'view' leads from the eye to it, 'away' is its distance along the view's axis and 'solid' that of something solid.
+float opacityOfPixel(vec3 normal, vec3 view, vec3 own_place, float away, float solid) {
+  float opacity = fadeBetween(away, near_fade.x, near_fade.y) * fadeBetween(away, far_fade.y, far_fade.x)
+    * fadeBetween(solid - away, 0.0, soft_distance);
+  if (rim.x == rim.y) {
+    return opacity;
+  }
+  return opacity * rimOpacity(abs(dot(normalize(normal), normalize(view))), rimNoise(own_place, rim_frequency, rim_scroll), rim);
+}
+
+// A factor of the light of what rims let show: the inside of the far surface.
+float insideFactor(vec3 normal, vec3 view) {
+  return rim.x != rim.y && dot(normal, view) > 0.0 ? inside_light : 1.0;
+}
+
+// The threshold of a pixel; 1.0 where another level is drawn.
+float thresholdOfPixel() {
+  float threshold = fract(ditherThreshold(gl_FragCoord.xy) + dither_shift);
+  return threshold >= shown.x && threshold < shown.y ? threshold : 1.0;
 }
 `;
 

@@ -1,7 +1,7 @@
-import type { Color, ColorRepresentation, DirectionalLight, Mesh, BufferGeometry, ShaderMaterial,
-  ShaderMaterialParameters, Vector3 } from 'three';
+import type { BufferGeometry, Camera, Color, ColorRepresentation, DepthTexture, DirectionalLight, LOD, Material, Mesh, PointLight,
+  ShaderMaterial, ShaderMaterialParameters, SpotLight, Texture, Vector3 } from 'three';
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
-import type { Lobes, Phase, SkyColors, Sun } from './settings.js';
+import type { Lobes, Phase, ShadowFrame, SkyColors, Sun } from './settings.js';
 
 export type { Phase };
 
@@ -14,7 +14,7 @@ export interface SunlitSettings extends Sun<Vector3, DirectionalLight, Color> {
   tone: 'renderer' | 'cloudbake';
 }
 
-export interface CloudSettings extends SunlitSettings, Lobes<Color> {
+export interface CloudSettings extends SunlitSettings, Lobes<Color, DepthTexture, PointLight | SpotLight> {
   /** The numbers n of the two TEXCOORD_n that contain the lobes. */
   uvSets: [number, number];
   /**
@@ -63,4 +63,31 @@ export class CloudbakeLoaderPlugin implements GLTFLoaderPlugin {
   readonly name: 'cloudbake';
   /** Draws the meshes that have lobes with one CloudMaterial, which it also stores in gltf.userData.cloudMaterial. */
   afterRoot(gltf: GLTF): Promise<void>;
+}
+
+/**
+ * The levels of detail of a cloud (`cloudbake bake --lods`), from what GLTFLoader returns for their files, the full asset first. They
+ * switch by the size on the screen, as `cloudbake preview` does. Use it like an LOD.
+ */
+export class CloudLevels extends LOD {
+  constructor(gltfs: readonly GLTF[], settings?: { switchBand?: number, pictureHeight?: number });
+  /** The share of the size over which two levels share the pixels; 0: they switch at once. */
+  switchBand: number;
+  /** Pixels of the picture; 0: those of the window. */
+  pictureHeight: number;
+  update(camera: Camera): void;
+}
+
+/** The shadow of a cloud on other things, from the picture that `cloudbake shadow` wrote and the JSON beside it. */
+export class CloudShadow {
+  constructor(texture: Texture, frame: ShadowFrame, strength?: number);
+  /** Loads shadow.png, and shadow.json beside it. */
+  static load(picture: string, strength?: number): Promise<CloudShadow>;
+  frame: ShadowFrame;
+  /** 0: no shadow, 1: all of it. */
+  shadowStrength: number;
+  /** Call it after a change of `frame` or `shadowStrength`. */
+  update(): void;
+  /** Gives the shadow to a material of three.js that is lit: its direct light is darkened. It replaces the material's onBeforeCompile. */
+  darken<M extends Material>(material: M): M;
 }

@@ -1,8 +1,11 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Matrix3, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
-  Vector2, Vector3 } from 'three';
-import { DAY, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
-import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, harmonicNames, vertexLight } from './shaders.js';
+import { Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, LOD, LinearFilter, Matrix3, Mesh, NoColorSpace, ShaderMaterial,
+  TextureLoader, UniformsLib, UniformsUtils, Vector2, Vector3 } from 'three';
+import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, settingsOf, skyDefaults, shadowValues, softValues, sunDefaults,
+  switchPixelsOf } from './asset.js';
+import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
+import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, harmonicNames, vertexLight } from './shaders.js';
+import { SOLID_DISTANCE } from './three_depth.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? 'uv' : n < 4 ? `uv${n}` : `texcoord_${n}`;
@@ -17,7 +20,14 @@ const cloudVertex = (names, order) => `
 ${names.filter(name => name !== 'uv').map(name => `attribute vec2 ${name};`).join('\n')}
 varying vec2 cloud_light;
 varying vec3 cloud_view;
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+#endif
 ${vertexLight(order)}
+#ifdef LAMPS
+  varying vec3 cloud_lamps;
+  ${LAMPS}
+#endif
 void main() {
   #include <morphinstance_vertex>
   #include <batching_vertex>
@@ -42,7 +52,16 @@ void main() {
     mat4 blend = skinWeight.x * boneMatX + skinWeight.y * boneMatY + skinWeight.z * boneMatZ + skinWeight.w * boneMatW;
     to_world *= bindMatrixInverse * blend * bindMatrix;
   #endif
-  cloud_light = lightOfVertex(${names.join(', ')}, objectNormal, mat3(to_world));
+  vec4 lobe = lobeInWorld(unpackLobe(${names.join(', ')}, flipped), mat3(to_world));
+  vec3 facing = normalInWorld(objectNormal, mat3(to_world));
+  cloud_light = lightOfVertex(lobe, facing, mat3(to_world));
+  #ifdef SOFT
+    cloud_normal = facing;
+    cloud_place = position;
+  #endif
+  #ifdef LAMPS
+    cloud_lamps = lampsOfVertex(lobe, place, facing);
+  #endif
   cloud_view = isOrthographic ? -vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]) : place - cameraPosition;
 }
 `;
@@ -67,14 +86,42 @@ ${PIXEL_COLOR}
 ${TONE}
 ${CHANNELS}
 uniform vec2 painted_range;  // of depth, while PaintedClouds draws
+#ifdef LAMPS
+  varying vec3 cloud_lamps;
+#endif
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+  ${SOFT}
+  ${SOLID_DISTANCE}
+  uniform highp sampler2D solid_depth;
+  uniform vec3 solid_clip;  // near and far plane, and 1.0 if there is such a texture
+#endif
 
 void main() {
   #include <logdepthbuf_fragment>
+  float away = -dot(cloud_view, vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]));
+  float opacity = 1.0;
+  vec2 light = cloud_light;
+  #ifdef SOFT
+    light *= insideFactor(cloud_normal, cloud_view);
+    float solid = solid_clip.z > 0.0 ? solidDistance(solid_depth, ivec2(gl_FragCoord.xy), solid_clip.xy) : 1e30;
+    opacity = opacityOfPixel(cloud_normal, cloud_view, cloud_place, away, solid);
+    float threshold = thresholdOfPixel();
+    #ifdef ALPHA_TO_COVERAGE
+      if (threshold == 1.0) discard;
+    #else
+      if (opacity <= threshold) discard;
+      opacity = 1.0;
+    #endif
+  #endif
   if (painted_range.y > painted_range.x) {
-    gl_FragColor = channelsOf(cloud_light, -dot(cloud_view, vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2])), painted_range);
+    gl_FragColor = channelsOf(cloud_light, away, painted_range);
     return;
   }
-  gl_FragColor = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
+  gl_FragColor = vec4(colorOfPixel(light, cloud_view), opacity);
+  #ifdef LAMPS
+    gl_FragColor.rgb += cloud_lamps;
+  #endif
   ${TO_SCREEN}
   #include <fog_fragment>
   #include <dithering_fragment>
@@ -150,6 +197,16 @@ class SunlitMaterial extends ShaderMaterial {
   }
 }
 
+// A PointLight or a SpotLight as a lamp of lamp.glsl.
+function lampOf(/** @type {import('three').PointLight | import('three').SpotLight} */ light) {
+  const place = new Vector3().setFromMatrixPosition(light.matrixWorld), color = light.color.clone().multiplyScalar(light.intensity);
+  const lamp = { place, color, range: light.distance, radius: light.userData.radius ?? 0, axis: new Vector3(), cone: new Vector2(-1, -1) };
+  if (!('angle' in light)) return lamp;
+  lamp.axis.setFromMatrixPosition(light.target.matrixWorld).sub(place).normalize();
+  lamp.cone.set(Math.cos(light.angle * (1 - light.penumbra)), Math.cos(light.angle));
+  return lamp;
+}
+
 export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['ambientSky']} */ ambientSky;
   /** @type {Settings['ambientGround']} */ ambientGround;
@@ -165,7 +222,8 @@ export class CloudMaterial extends SunlitMaterial {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, volume_gain: { value: 1 }, flipped: { value: 0 },
       own_extinction: { value: 1 }, to_mesh: { value: new Matrix3() } };
-    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() },
+    const soft = Object.fromEntries([...Object.keys(softValues({})), 'solid_depth', 'solid_clip'].map(name => [name, { value: null }]));
+    super({ ...colors, ...numbers, ...soft, lamps: { value: [] }, shape: { value: new Vector2() }, phase: { value: new Vector3() },
       painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
     this.isCloudMaterial = true;
@@ -196,11 +254,35 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
+  get lamps() { return this.lights; }
+  set lamps(lights) {
+    if (lights.length !== (this.defines.LAMPS ?? 0)) this.needsUpdate = true;
+    if (lights.length > 0) this.defines.LAMPS = lights.length;
+    else delete this.defines.LAMPS;
+    this.lights = lights;
+  }
+
+  get soft() { return 'SOFT' in this.defines; }
+  set soft(is_soft) {
+    if (is_soft === this.soft) return;
+    if (is_soft) this.defines.SOFT = '';
+    else delete this.defines.SOFT;
+    this.needsUpdate = true;
+  }
+
   onBeforeRender(...given) {
-    const { to_mesh } = this.uniforms, [, , , , mesh] = given;
+    const { to_mesh } = this.uniforms, [, , { near, far }, , mesh] = given;
     if (mesh.userData.cloudToMesh) to_mesh.value.fromArray(mesh.userData.cloudToMesh);
     else to_mesh.value.identity();
+    if (this.soft) this.writeSoft(mesh.userData.cloudShown, near, far);
     super.onBeforeRender();
+  }
+
+  writeSoft(shown, near, far) {
+    const depth = this.painted ? null : this.depthTexture;
+    for (const [name, value] of Object.entries(softValues(this, this.painted, shown))) this.uniforms[name].value = value;
+    this.uniforms.solid_depth.value = depth;
+    this.uniforms.solid_clip.value = [near, far, depth ? 1 : 0];
   }
 
   writeUniforms() {
@@ -216,6 +298,7 @@ export class CloudMaterial extends SunlitMaterial {
     uniforms.painted_range.value.fromArray(this.painted?.depthRange ?? [0, 0]);
     uniforms.flipped.value = this.flipV ? 1 : 0;
     uniforms.phase.value.set(this.phase.share, this.phase.asymmetry, this.phase.limit);
+    if (this.lamps.length > 0) uniforms.lamps.value = this.lamps.map(lampOf);
   }
 
   copy(source) {
@@ -223,11 +306,13 @@ export class CloudMaterial extends SunlitMaterial {
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
     const own = ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume', 'harmonicOrder',
-      'harmonicExtinction'];
+      'harmonicExtinction', 'rimFrequency', 'rimScroll', 'insideLight', 'ditherShift', 'depthTexture', 'lamps', ...SOFT_NAMES, 'soft'];
     for (const key of own) this[key] = source[key];
     return this;
   }
 }
+
+addSoftSettings(CloudMaterial);
 
 // For a mesh that covers the screen, such as CloudSky, and cameras with perspective.
 export class SkyMaterial extends SunlitMaterial {
@@ -290,5 +375,91 @@ export class CloudbakeLoaderPlugin {
       mesh.material = material;
     }
     gltf.userData.cloudMaterial = material;
+    gltf.userData.cloudSwitchPixels = switchPixelsOf(this.parser.json);
+  }
+}
+
+// The levels of detail of a cloud (`cloudbake bake --lods`), from the results of GLTFLoader, the full asset first. They switch by the size
+// on the screen where the renderer draws them, as `cloudbake preview` does.
+export class CloudLevels extends LOD {
+  constructor(gltfs, { switchBand = 0.3, pictureHeight = 0 } = {}) {
+    super();
+    this.isCloudLevels = true;
+    this.switchBand = switchBand;
+    this.pictureHeight = pictureHeight;
+    this.switches = gltfs.map(({ userData }) => userData.cloudSwitchPixels);
+    gltfs.forEach(({ scene, userData: { cloudMaterial } }, i) => {
+      this.addLevel(scene, i);
+      cloudMaterial.soft = true;
+    });
+  }
+
+  // The renderer calls it before it draws.
+  update(camera) {
+    this.updateWorldMatrix(true, true);
+    const [{ object: full }] = this.levels, box = new Box3().setFromObject(full), own = new Box3();
+    const longest = Math.max(0, ...meshesOf(full).map(({ geometry, matrixWorld }) => {
+      if (!geometry.boundingBox) geometry.computeBoundingBox();
+      return stretchedSides(own.copy(geometry.boundingBox).getSize(new Vector3()).toArray(), matrixWorld.elements);
+    }));
+    const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld).toArray(), tangent = 1 / camera.projectionMatrix.elements[5];
+    const height = this.pictureHeight || globalThis.innerHeight * globalThis.devicePixelRatio;
+    const shown = shownLevels(pixelsAcross(longest, box.min.toArray(), box.max.toArray(), eye, tangent, height), this.switches,
+      this.switchBand);
+    this.levels.forEach(({ object }, i) => {
+      object.visible = shown[i] !== null;
+      for (const mesh of meshesOf(object)) mesh.userData.cloudShown = shown[i] ?? [0, 1];
+    });
+  }
+}
+
+function meshesOf(object) {
+  const meshes = [];
+  object.traverse(one => { if (one.material?.isCloudMaterial) meshes.push(one); });
+  return meshes;
+}
+
+// The shadow of a cloud that `cloudbake shadow` wrote: SHADOW.png, and SHADOW.json with its frame.
+export class CloudShadow {
+  constructor(texture, frame, strength = 1) {
+    Object.assign(texture, { minFilter: LinearFilter, generateMipmaps: false, colorSpace: NoColorSpace });
+    this.shadowStrength = strength;
+    this.frame = frame;
+    this.uniforms = { cloud_shadow: { value: texture } };
+    this.update();
+  }
+
+  static async load(picture, strength = 1) {
+    const answer = await fetch(picture.replace(/\.png$/, '.json'));
+    if (!answer.ok) throw new Error(`${picture} has no frame beside it: ${answer.url} answers ${answer.status}; copy both files`);
+    return new CloudShadow(await new TextureLoader().loadAsync(picture), await answer.json(), strength);
+  }
+
+  // After a change of the frame or of the strength.
+  update() {
+    for (const [name, value] of Object.entries(shadowValues(this.frame, this.shadowStrength))) (this.uniforms[name] ??= {}).value = value;
+  }
+
+  // A built-in material with lights gets the shadow: its direct light is darkened.
+  darken(material) {
+    material.onBeforeCompile = shader => {
+      Object.assign(shader.uniforms, this.uniforms);
+      shader.vertexShader = shader.vertexShader.replace('#include <common>', '#include <common>\nvarying vec3 cloud_shadow_place;')
+        .replace('#include <project_vertex>', `#include <project_vertex>
+          mat4 shadow_to_world = modelMatrix;
+          #ifdef USE_INSTANCING
+            shadow_to_world *= instanceMatrix;
+          #endif
+          cloud_shadow_place = (shadow_to_world * vec4(transformed, 1.0)).xyz;`);
+      shader.fragmentShader = shader.fragmentShader
+        .replace('#include <common>', `#include <common>\nvarying vec3 cloud_shadow_place;\n${CAST_SHADOW}`)
+        .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
+          float cloud_shade = castShadow(cloud_shadow_place);
+          reflectedLight.directDiffuse *= cloud_shade;
+          reflectedLight.directSpecular *= cloud_shade;`);
+    };
+    material.customProgramCacheKey = () => 'cloudbake shadow';
+    material.needsUpdate = true;
+    return material;
   }
 }

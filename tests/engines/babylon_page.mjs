@@ -12,10 +12,10 @@ import '@babylonjs/core/Meshes/thinInstanceMesh.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import { CloudMaterial, SkyMaterial, cloudMaterialOf, createCloudSky } from 'cloudbake-materials/babylon';
 
-const colorOf = array => new Color3(...array);
+export const colorOf = array => new Color3(...array);
 
 let engine;
-function engineOf([width, height]) {
+export function engineOf([width, height]) {
   if (!engine) {
     const canvas = document.createElement('canvas');
     document.body.append(canvas);
@@ -61,9 +61,9 @@ export function instanced(nodes, single, kind) {
 }
 
 // The axes of the scene: without useRightHandedSystem the loader mirrors x.
-const inScene = ({ rightHanded }, [x, y, z]) => new Vector3(rightHanded ? x : -x, y, z);
+export const inScene = ({ rightHanded }, [x, y, z]) => new Vector3(rightHanded ? x : -x, y, z);
 
-function prepare(subject, { size, camera, sun, colors, light, fog, changes = {} }) {
+export function prepare(subject, { size, camera, sun, colors, light, fog, changes = {} }) {
   const { scene, meshes, sky, material, settings } = subject, eye = scene.activeCamera ?? new FreeCamera('eye', Vector3.Zero(), scene);
   engineOf(size);
   eye.position = inScene(subject, camera.from);
@@ -95,12 +95,13 @@ export async function draw(subject, view) {
   scene.render();  // makes what the target needs
   await scene.whenReadyAsync();
   const projection = eye.getProjectionMatrix(true).clone();
-  for (const [x, y] of places) {
+  for (const [i, [x, y]] of places.entries()) {
+    if (subject.material) subject.material.ditherShift = i / places.length;
     eye.freezeProjectionMatrix(projection.multiply(Matrix.Translation(-2 * (x - 0.5) / width, 2 * (y - 0.5) / height, 0)));
     scene.render();
     const read = await target.readPixels();
-    for (let i = 0; i < sum.length; ++i)
-      sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
+    for (let v = 0; v < sum.length; ++v)
+      sum[v] += read[4 * (width * (height - 1 - Math.floor(v / 3 / width)) + Math.floor(v / 3) % width) + v % 3] / places.length;
   }
   eye.unfreezeProjectionMatrix();
   eye.outputRenderTarget = null;
@@ -109,12 +110,17 @@ export async function draw(subject, view) {
 }
 
 export async function drawToCanvas(subject, view, tone) {
-  const { size: [width, height] } = view, eye = prepare(subject, view), { scene } = subject, gl = engine._gl;
+  const eye = prepare(subject, view), { scene } = subject;
   for (const material of [subject.material, subject.sky]) material.tone = tone;
   eye.unfreezeProjectionMatrix();
   await scene.whenReadyAsync();
   scene.render();
-  const rows = new Uint8Array(4 * width * height);
+  return canvasOf(view.size);
+}
+
+// The 8 bits of the canvas: three values per pixel, rows from the top.
+export function canvasOf([width, height]) {
+  const rows = new Uint8Array(4 * width * height), gl = engine._gl;
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
   return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width))
     + Math.floor(i / 3) % width) + i % 3]);

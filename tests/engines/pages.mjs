@@ -19,7 +19,8 @@ export const percent = share => `${(100 * share).toFixed(3)} %`;
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.glb': 'model/gltf-binary' };
 const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'three/examples/jsm/',
   '@babylonjs/core/': '@babylonjs/core/', '@babylonjs/loaders/': '@babylonjs/loaders/',
-  'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/three/painted': 'cloudbake-materials/painted.js',
+  'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/three/painted': 'cloudbake-materials/three_painted.js',
+  'cloudbake-materials/babylon/painted': 'cloudbake-materials/babylon_painted.js',
   'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
 
 // Serves the folder, and the pages beside this file.

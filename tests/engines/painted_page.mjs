@@ -5,6 +5,7 @@ import { ACESFilmicToneMapping, BoxGeometry, Color, DirectionalLight, FloatType,
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { OutputPass } from 'three/addons/postprocessing/OutputPass.js';
 import { PaintedClouds } from 'cloudbake-materials/three/painted';
+import { naiveOf } from './naive.mjs';
 import { canvasOf, colorOf, instanced, prepare, rendererOf } from './three_page.mjs';
 
 export { describe, load } from './three_page.mjs';
@@ -29,7 +30,15 @@ export const defaults = () => {
   return { depthSpread, softening, swirl, erosion, phase, fogDensity, halfLambert, volumeGain };
 };
 
-export const paint = (subject, view, settings) => painted(passFor(subject, prepare(subject, view), view, settings), rendererOf(view.size));
+export function paint(subject, view, settings) {
+  const eye = prepare(subject, view), { clouds = true, culled = true, near = eye.near } = view;
+  eye.near = near;
+  eye.updateProjectionMatrix();
+  for (const mesh of subject.meshes) Object.assign(mesh, { visible: clouds, frustumCulled: culled });
+  const shown = painted(passFor(subject, eye, view, settings), rendererOf(view.size));
+  for (const mesh of subject.meshes) Object.assign(mesh, { visible: true, frustumCulled: true });
+  return shown;
+}
 
 export function paintInstances(nodes, single, view, settings, kind) {
   const subject = instanced(nodes, single, kind);
@@ -60,7 +69,7 @@ export function paintBoth(subject, view) {
 // A red ball on the way from the eye to what it looks at, or beyond; with the clouds and without them.
 export function paintBall(subject, view, share, options) {
   const renderer = new WebGLRenderer(options), eye = prepare(subject, view), { at, from, distance } = view.camera;
-  const ball = new Mesh(new SphereGeometry(distance * 0.03), new MeshBasicMaterial({ color: 0xff0000 }));
+  const ball = redBall(0.03 * distance);
   renderer.setPixelRatio(1);
   renderer.setSize(...view.size);
   ball.position.copy(new Vector3(...from).lerp(new Vector3(...at), share));
@@ -73,6 +82,34 @@ export function paintBall(subject, view, share, options) {
   }
   for (const mesh of subject.meshes) mesh.visible = true;
   renderer.dispose();
+  return shown;
+}
+
+const redBall = radius => new Mesh(new SphereGeometry(radius), new MeshBasicMaterial({ color: 0xff0000 }));
+
+// A ball before the cloud, by several settings; `naive`: with the composite of naive.mjs.
+export function paintBefore(subject, view, all) {
+  const eye = prepare(subject, view), ball = redBall(0.05 * view.camera.distance);
+  ball.position.set(...view.camera.from).lerp(new Vector3(...view.camera.at), 0.5);
+  subject.scene.add(ball);
+  const shown = all.map(({ naive, clouds = true, ...settings }) => {
+    const pass = passFor(subject, eye, view, settings), { composite } = pass.steps;
+    if (naive) composite.fragmentShader = naiveOf(composite.fragmentShader);
+    for (const mesh of subject.meshes) mesh.visible = clouds;
+    return painted(pass, rendererOf(view.size));
+  });
+  for (const mesh of subject.meshes) mesh.visible = true;
+  subject.scene.remove(ball);
+  return shown;
+}
+
+// A red floor through the middle of the cloud.
+export function paintCut(subject, view, settings) {
+  const floor = new Mesh(new BoxGeometry(8, 0.01, 8), new MeshBasicMaterial({ color: 0xff0000 }));
+  floor.position.set(...view.camera.at);
+  subject.scene.add(floor);
+  const shown = paint(subject, view, settings);
+  subject.scene.remove(floor);
   return shown;
 }
 

@@ -76,12 +76,13 @@ export function draw(subject, view) {
   const target = new WebGLRenderTarget(width, height, { type: FloatType, format: RGBAFormat }), read = new Float32Array(4 * width * height);
   const sum = new Float64Array(3 * width * height);
   own.setRenderTarget(target);
-  for (const [x, y] of places) {
+  for (const [i, [x, y]] of places.entries()) {
+    if (subject.material) subject.material.ditherShift = i / places.length;
     eye.setViewOffset(width, height, x - 0.5, y - 0.5, width, height);
     own.render(subject.scene, eye);
     own.readRenderTargetPixels(target, 0, 0, width, height, read);
-    for (let i = 0; i < sum.length; ++i)
-      sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
+    for (let v = 0; v < sum.length; ++v)
+      sum[v] += read[4 * (width * (height - 1 - Math.floor(v / 3 / width)) + Math.floor(v / 3) % width) + v % 3] / places.length;
   }
   own.setRenderTarget(null);
   target.dispose();
