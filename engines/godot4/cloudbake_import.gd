@@ -48,6 +48,7 @@ func _material(info, first_set):
 			continue
 		material.set_shader_parameter(parameter, info[parameter])
 	material.set_shader_parameter("first_set", first_set)
+	material.set_shader_parameter("of_volume", 1.0 if info.get("fit_to") == "volume" else 0.0)
 	ResourceSaver.save(material, path)
 	material.take_over_path(path)
 	return material
