@@ -54,6 +54,8 @@ const EROSION_NOISE = {"octaves": @erosion_octaves@, "gain": @erosion_gain@, "fa
 var _clouds = []    # the nodes
 var _shaders = {}    # materials of the clouds, and the shaders that they have by themselves
 var _layers = {}    # nodes, and their layers
+var _cameras = {}    # cameras, and whether they saw the layer of the clouds
+var _measured = 1.0    # the clouds' size
 var _eye = Camera.new()
 var _passes = {}    # viewports by the name of what they make
 var _composite = MeshInstance.new()
@@ -88,6 +90,10 @@ func _exit_tree():
 	for node in _layers:
 		if is_instance_valid(node):
 			node.layers = _layers[node]
+	for camera in _cameras:
+		if is_instance_valid(camera):
+			camera.cull_mask |= _cameras[camera]
+	_cameras.clear()
 	_shaders.clear()
 	_layers.clear()
 	_clouds.clear()
@@ -98,6 +104,8 @@ func _process(delta):
 	var camera = get_viewport().get_camera()
 	if camera == null:
 		return
+	if not camera in _cameras:
+		_cameras[camera] = camera.cull_mask & _bit()
 	camera.cull_mask &= ~_bit()
 	_find_clouds()
 	var picture = get_viewport().size
@@ -180,9 +188,6 @@ func _find_clouds():
 	if found != _clouds:
 		_clouds = found
 		_measured = _measure()
-
-
-var _measured = 1.0
 
 
 func _materials_of(node):

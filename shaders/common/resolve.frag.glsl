@@ -8,7 +8,8 @@ void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * samples_per_side;
   ChannelSum sum = ChannelSum(vec4(0.0), vec2(0.0));
   for (int i = 0; i < samples_per_side * samples_per_side; i++) {
-    addChannels(texelFetch(samples, first + ivec2(i % samples_per_side, i / samples_per_side), 0).xywz, 1.0, sum);
+    vec4 p = texelFetch(samples, first + ivec2(i % samples_per_side, i / samples_per_side), 0);
+    addChannels(vec4(p.xy, step(0.5, p.w), p.z), 1.0, sum);  // an engine may have filtered them, so that covering is not quite 0 or 1
   }
   value = channelMean(sum);
 }

@@ -28,6 +28,9 @@ func _init():
 			for key in views[i]:
 				job[key] = views[i][key]
 			place_camera(camera, job)
+			viewport.size = vector(job.size)
+			if job.get("leaves", false):
+				viewport.remove_child(nodes["cloudbake_painted"])
 			for frame in 3:
 				yield(self, "idle_frame")
 			save(viewport, job.name if views.size() == 1 else "%s_%d" % [job.name, i])
