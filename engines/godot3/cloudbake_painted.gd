@@ -240,20 +240,20 @@ func _set_values(camera, picture, small):
 	var origin = _clouds[0].global_transform.origin if _clouds else Vector3.ZERO
 	for material in _shaders:
 		for pair in [["depth_range", depth_range], ["painted_near_fade", near_fade], ["painted_half_lambert", half_lambert],
-				["volume_gain", volume_gain]]:
+				["painted_volume_gain", volume_gain]]:
 			material.set_shader_param(pair[0], pair[1])
-	_set("drawn", {"samples_per_side": samples_per_side})
+	_set_step("drawn", {"samples_per_side": samples_per_side})
 	for name in ["depth_rows", "depth_boxes"]:
-		_set(name, {"near_half": depth_spread * small.y, "far_half": depth_spread * small.y})
+		_set_step(name, {"near_half": depth_spread * small.y, "far_half": depth_spread * small.y})
 	for name in ["light_rows", "light_boxes", "light_rows2", "light_boxes2"]:
-		_set(name, {"near_half": near_width * small.y, "far_half": far_width * small.y})
-	_set("swirled", {"tile_size": tile_size, "far_tiles": far_tiles, "swirl_strength": swirl_strength, "far_strength": far_strength,
+		_set_step(name, {"near_half": near_width * small.y, "far_half": far_width * small.y})
+	_set_step("swirled", {"tile_size": tile_size, "far_tiles": far_tiles, "swirl_strength": swirl_strength, "far_strength": far_strength,
 		"phases": _phases(), "drift": _drift(), "seed": noise_seed, "dark": dark})
-	_set("swirled", SWIRL_NOISE)
-	_set("worn", {"depth_range": depth_range, "noise_origin": origin, "noise_size": detail_size * own_size, "shrink": detail_shrink,
+	_set_step("swirled", SWIRL_NOISE)
+	_set_step("worn", {"depth_range": depth_range, "noise_origin": origin, "noise_size": detail_size * own_size, "shrink": detail_shrink,
 		"darkening": detail_darkening, "seed": noise_seed})
-	_set("worn", EROSION_NOISE)
-	_set("worn", _view(camera, small))
+	_set_step("worn", EROSION_NOISE)
+	_set_step("worn", _view(camera, small))
 
 	var values = _view(camera, picture)
 	values.fog_density = fog_density
@@ -280,8 +280,8 @@ func _view(camera, picture):
 		"per_pixel": 2 * tan(deg2rad(camera.fov) / 2) / side}
 
 
-func _set(name, values):
-	_write(_passes[name].get_child(0).material, values)
+func _set_step(step, values):
+	_write(_passes[step].get_child(0).material, values)
 
 
 func _write(material, values):

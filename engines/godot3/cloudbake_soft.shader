@@ -6,14 +6,14 @@ void vertex() {
 	mat3 to_world = mat3(WORLD_MATRIX);
 	vec4 lobe = lobeInWorld(unpackLobe(UV, UV2, 0.0), to_world);
 	vec3 facing = normalInWorld(NORMAL, to_world);
-	lit = lightOf(lobe, facing, half_lambert, 1.0);
+	lit = lightOf(lobe, facing, half_lambert, volume_gain);
 	lamp_light = lampsAt(lobe, (WORLD_MATRIX * vec4(VERTEX, 1.0)).xyz, facing);
 	own_place = VERTEX;
 }
 
 void fragment() {
-	vec3 on_screen = 2.0 * vec3(SCREEN_UV, texelFetch(DEPTH_TEXTURE, ivec2(FRAGCOORD.xy), 0).r) - 1.0;
-	float solid = solidDistance(on_screen, INV_PROJECTION_MATRIX);
+	float depth = 2.0 * texelFetch(DEPTH_TEXTURE, ivec2(FRAGCOORD.xy), 0).r - 1.0;
+	float solid = solidDistance(vec3(2.0 * SCREEN_UV - 1.0, depth), INV_PROJECTION_MATRIX);
 	float opacity = fadeOf(-VERTEX.z) * fadeBetween(solid + VERTEX.z, 0.0, soft_distance) * rimOf(abs(dot(NORMAL, VIEW)), TIME);
 	if (isLeftOut(opacity, FRAGCOORD.xy)) {
 		discard;

@@ -245,7 +245,7 @@ func _set_values(camera, picture, small):
 	var origin = _clouds[0].global_transform.origin if _clouds else Vector3.ZERO
 	for material in _shaders:
 		for pair in [["depth_range", depth_range], ["painted_near_fade", near_fade], ["painted_half_lambert", half_lambert],
-				["volume_gain", volume_gain]]:
+				["painted_volume_gain", volume_gain]]:
 			material.set_shader_parameter(pair[0], pair[1])
 	_set_step("drawn", {"samples_per_side": samples_per_side})
 	for name in ["depth_rows", "depth_boxes"]:

@@ -136,7 +136,10 @@ class Translation {
     skipLineEnd();
   }
 
+  // Those of Godot have one name, and may have hints after it.
   void writeUniforms() {
+    const auto last = std::find_if(tokens_.begin() + at_, tokens_.end(), [](Token token) { return token == ";" || token == ":"; });
+    if (last != tokens_.end() && *last == ":") return copy();
     ++at_;
     const std::vector<std::string> names = partsUpTo(";");
     const std::string& first = names.front();

@@ -1,16 +1,18 @@
 """What the tests of the kits for Godot share: assets and cameras as numbers, Godot 3 without a screen, and text of shaders."""
 
+import argparse
 import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tests/cli"))
-from bench import judge, skip
+from bench import judge, run as run_once, skip, temporary_folder, verdict
 from glb import node_matrix
 
 for program in ("godot3", "Xvfb", "glslangValidator"):
@@ -99,6 +101,51 @@ def picture(file):
     return np.asarray(Image.open(file).convert("RGB")).astype(int)
 
 
+# ---- shaders of Godot 4 -----------------------------------------------------------------------------------------------------------------
+
+SETS = re.compile(r"\tvec2 sets\[8\] = \{ .* \};\n")
+# What Godot gives to the stages of a shader, as GLSL.
+GIVEN = {"vertex": "const mat4 MODEL_MATRIX = mat4(1.0); in vec3 NORMAL, VERTEX; in vec2 UV, UV2; in vec4 CUSTOM0, CUSTOM1, CUSTOM2;"
+                   "out vec4 POSITION;",
+         "fragment": "const mat4 INV_VIEW_MATRIX = mat4(1.0), INV_PROJECTION_MATRIX = mat4(1.0); in vec3 VERTEX, NORMAL, VIEW;"
+                     "in vec2 SCREEN_UV; in vec4 FRAGCOORD; uniform float TIME; out vec3 ALBEDO; out float ALPHA; out vec4 COLOR;"}
+
+
+def glsl_of(shader, stage, renderer):
+    """A shader of Godot 4 as a stage of GLSL 4.5, for a compiler. `renderer`: the number of Godot's renderer; 0 is Compatibility."""
+    head = f"#version 450\n#define RENDERER_COMPATIBILITY 0\n#define CURRENT_RENDERER {renderer}\n{GIVEN[stage]}"
+    text = re.sub(r"render_mode .*;", "", re.sub(r"shader_type .*;", head, shader))
+    other = "fragment" if stage == "vertex" else "vertex"
+    text = re.sub(rf"void {other}\(\) \{{.*?\n\}}\n", "", text, flags=re.S)
+    text = text.replace("varying ", "out " if stage == "vertex" else "in ").replace(f"void {stage}()", "void main()")
+    return re.sub(r" : hint_\w+(\([^)]*\))?(, \w+)*", "", text)
+
+
+def compile_godot4(kit, folder):
+    """All shaders of a kit, by glslangValidator, for both kinds of depth."""
+    faults = []
+    for file in sorted(kit.rglob("*.gdshader")):
+        text = file.read_text()
+        for stage, suffix in (("vertex", "vert"), ("fragment", "frag")):
+            if f"void {stage}()" not in text:
+                continue
+            for renderer in (0, 2):
+                (folder / f"godot4.{suffix}").write_text(glsl_of(text, stage, renderer))
+                result = subprocess.run(["glslangValidator", folder / f"godot4.{suffix}"], capture_output=True, text=True, check=False)
+                faults += [f"{file.name}, {stage}: {result.stdout}"] if result.returncode else []
+    judge(not faults, f"the {len(list(kit.rglob('*.gdshader')))} shaders of Godot 4 compile", "\n".join(faults))
+
+
+def as_godot3(shader):
+    """A shader of Godot 4 in the language of Godot 3: other names, no arrays, no preprocessor, the depths of OpenGL."""
+    shader = re.sub(r"uniform sampler2D screen_depth.*;\n", "", SETS.sub("", shader)).replace("screen_depth", "DEPTH_TEXTURE")
+    shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
+    for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"), ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"),
+                     ("sets[first_set], sets[first_set + 1]", "UV, UV2")):
+        shader = shader.replace(old, new)
+    return shader
+
+
 # ---- scenes in linear colours -----------------------------------------------------------------------------------------------------------
 
 HALF_FLOATS = 15  # the format of Godot's Image
@@ -136,9 +183,99 @@ def on_screen(linear):
     return np.floor(255 * encoded(film) + (rank[..., None] + 0.5) / 64).astype(int)
 
 
+def is_cloud(linear):
+    return np.abs(linear[..., :3] - BACKGROUND).max(axis=2) > 0.02
+
+
 def fade_between(x, start, end):
     """fadeBetween of shaders/functions/soft.glsl."""
     if start == end:
         return np.where(x < start, 0.0, 1.0)
     t = np.clip((x - start) / (end - start), 0, 1)
     return t * t * (3 - 2 * t)
+
+
+SIZE = (360, 240)
+BACKGROUND = [0.2, 0.35, 0.6]
+SUN = (130, 28)
+
+
+def scene_text(asset, camera, more=""):
+    colors = "".join(f"{name} = {BACKGROUND}\n" for name in ("zenith", "low_sky", "horizon", "ground"))
+    fog = "" if "[fog]" in more else "[fog]\ncolor = [1.6, 1.8, 1.9]\n"
+    return f"""[camera]
+azimuth = {camera[0]}
+elevation = {camera[1]}
+[sun]
+azimuth = {SUN[0]}
+elevation = {SUN[1]}
+[sky]
+disc = "none"
+glow = 0
+[sky.colors]
+{colors}{fog}{more}[[cloud]]
+file = "{asset}.glb"
+"""
+
+
+class Bench:
+    """A project with the kit and two assets, and what preview draws of scenes with them."""
+
+    def __init__(self, run, folder):
+        self.run, self.folder, self.project = run, folder, folder / "project"
+        run("grow", "mediocris", "--vertices", "4000", "-o", "cloud.glb")
+        run("bake", ROOT / "data/sculpts/wuson.obj", "--lods", "50%,25%", "-o", "sculpt.glb")
+        self.write_kit(scene_text("cloud", (0, 0)), self.project)
+        assets = [file.stem for file in folder.glob("*.glb")]
+        for name in assets:
+            (self.project / f"{name}.glb").write_bytes((folder / f"{name}.glb").read_bytes())
+        import_assets(self.project, assets)
+        run("shader", "godot4", "cloud.glb", "--scene", "kit.toml", "-o", "godot4")
+        self.jobs = []
+
+    def write_kit(self, scene, project):
+        (self.folder / "kit.toml").write_text(scene)
+        self.run("shader", "godot3", "cloud.glb", "--scene", "kit.toml", "-o", project / "cloudbake")
+        for file in (project / "cloudbake/example").glob("*"):
+            (project / file.name).write_bytes(file.read_bytes())
+
+    def preview(self, scene):
+        """The picture, and the view that it has."""
+        (self.folder / "scene.toml").write_text(scene)
+        size = "x".join(map(str, SIZE))
+        self.run("preview", "--scene", "scene.toml", "--look", "painted", "--size", size, "-o", "truth.png")
+        self.run("view", "--scene", "scene.toml", "--look", "painted", "-o", "page.html")
+        [shown] = json.loads(re.search('id="page">(.*)</script>', (self.folder / "page.html").read_text())[1])["scenes"]
+        camera, towards = shown["camera"], direction((shown["view"]["azimuth"], shown["view"]["elevation"]))
+        away = camera["distance"] * max(1, camera["aspect"] * SIZE[1] / SIZE[0])
+        view = {"eye": [at + away * d for at, d in zip(camera["at"], towards)], "target": camera["at"], "fov": camera["fov"]}
+        return picture(self.folder / "truth.png"), view
+
+    def add(self, name, view, asset="cloud", **more):
+        """A scene to draw (tests/godot/scenes.gd has the keys)."""
+        self.jobs.append({"name": name, "size": SIZE, "background": [float(x) for x in encoded(np.array(BACKGROUND))],
+                          "clouds": [{"asset": asset}], **view, **more})
+
+    def paint(self, name, view, asset="cloud", painted=None, **more):
+        """A scene to draw in the painted look, with those settings."""
+        settings = {"time_scale": 0, "samples_per_side": 4, **(painted or {})}
+        self.add(name, view, asset, **{"scripts": {"cloudbake_painted": settings}, **more})
+
+    def draw(self):
+        draw_scenes(self.project, self.jobs)
+        self.jobs = []
+
+    def shown(self, name):
+        return linear_picture(self.project, name)[..., :3]
+
+
+def main(doc, test):
+    """Runs test(run, folder), where run(words…) is the program in that folder."""
+    parser = argparse.ArgumentParser(description=doc.splitlines()[0])
+    parser.add_argument("cloudbake", type=pathlib.Path)
+    parser.add_argument("--keep", type=pathlib.Path, metavar="FOLDER", help="work there and keep the files")
+    options = parser.parse_args()
+    binary = options.cloudbake.resolve()
+    with temporary_folder(options.keep) as folder:
+        test(lambda *words: run_once(binary, *words, cwd=folder), folder)
+    verdict()

@@ -29,6 +29,8 @@ func _init():
 				job[key] = views[i][key]
 			place_camera(camera, job)
 			viewport.size = vector(job.size)
+			if "limit" in job:
+				nodes["cloudbake_levels"]._limits[1] = job.limit
 			if job.get("leaves", false):
 				viewport.remove_child(nodes["cloudbake_painted"])
 			for frame in 3:
@@ -132,8 +134,28 @@ func scripted(name, settings):
 	node.name = name
 	node.set_script(script)
 	for key in settings:
-		node.set(key, value_of(settings[key]))
+		if not key in ["picture", "levels"]:
+			node.set(key, value_of(settings[key]))
+	if "picture" in settings:
+		node.picture = texture_of(settings.picture)
+	if "levels" in settings:
+		node.levels = scenes_of(settings.levels)
 	return node
+
+
+func texture_of(path):
+	var image = Image.new()
+	image.load(path)
+	var texture = ImageTexture.new()
+	texture.create_from_image(image, Texture.FLAG_FILTER)
+	return texture
+
+
+func scenes_of(paths):
+	var scenes = []
+	for path in paths:
+		scenes.append(load(path))
+	return scenes
 
 
 func save(viewport, name):

@@ -7,8 +7,8 @@ void vertex() {
 
 void fragment() {
 	ivec2 at = ivec2(FRAGCOORD.xy);
-	vec3 on_screen = 2.0 * vec3(SCREEN_UV, texelFetch(DEPTH_TEXTURE, at, 0).r) - 1.0;
-	vec4 p = visibleChannels(at, solidDistance(on_screen, INV_PROJECTION_MATRIX));
+	float depth = 2.0 * texelFetch(DEPTH_TEXTURE, at, 0).r - 1.0;
+	vec4 p = visibleChannels(at, solidDistance(vec3(2.0 * SCREEN_UV - 1.0, depth), INV_PROJECTION_MATRIX));
 	ALBEDO = cloudsColor(p, at);
 	ALPHA = p.z;
 }

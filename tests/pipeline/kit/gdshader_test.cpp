@@ -8,6 +8,8 @@ namespace {
 
 TEST(Gdshader, HasAUniformPerLine) {
   EXPECT_EQ(gdshaderOf("uniform highp sampler2D a, b;  // two\n"), "uniform highp sampler2D a;\nuniform highp sampler2D b;  // two\n");
+  const char* const depth = "uniform sampler2D depth : hint_depth_texture, filter_nearest;\n";
+  EXPECT_EQ(gdshaderOf(depth), depth);
   const char* const own = "uniform float a : hint_range(0.0, 1.0) = 0.5;    // a, b\nuniform vec3 b = vec3(1.0, 2.0, 3.0);\n";
   EXPECT_EQ(gdshaderOf(own), own);
 }
