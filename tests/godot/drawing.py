@@ -140,8 +140,8 @@ def as_godot3(shader):
     """A shader of Godot 4 in the language of Godot 3: other names, no arrays, no preprocessor, the depths of OpenGL."""
     shader = re.sub(r"uniform sampler2D screen_depth.*;\n", "", SETS.sub("", shader)).replace("screen_depth", "DEPTH_TEXTURE")
     shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
-    for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"), ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"),
-                     ("sets[first_set], sets[first_set + 1]", "UV, UV2")):
+    for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"),
+                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2")):
         shader = shader.replace(old, new)
     return shader
 
