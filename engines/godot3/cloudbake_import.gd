@@ -21,7 +21,7 @@ func post_import(scene):
 		push_error("%s has its lobes in the UV sets %d and %d. They cannot be brought to UV and UV2: the clouds get no shader." %
 				[get_source_file(), first_set, first_set + 1])
 		return scene
-	_set_material(scene, _material(info))
+	_set_material(scene, _material(info), int(info.get("switch_pixels", 0)))
 	return scene
 
 
@@ -38,7 +38,9 @@ func _document(file):
 func _material(info):
 	var path = get_source_file().get_basename() + "_cloud.tres"
 	var material = load(path) if ResourceLoader.exists(path) else ShaderMaterial.new()
-	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake.shader")
+	var folder = get_script().resource_path.get_base_dir()
+	if not material.shader or not material.shader.resource_path.begins_with(folder):    # keeps the choice of another shader of the kit
+		material.shader = load(folder + "/cloudbake.shader")
 	for name in ["exponent", "bias", "extinction"]:
 		if not name in info:
 			continue
@@ -46,20 +48,22 @@ func _material(info):
 			push_error("%s: extras.cloudbake.%s is %s, not a number of 32 bits: bake it again." % [get_source_file(), name, info[name]])
 			continue
 		material.set_shader_param(name, info[name])
+	material.set_shader_param("of_volume", 1.0 if info.get("fit_to") == "volume" else 0.0)
 	ResourceSaver.save(path, material)
 	material.take_over_path(path)
 	return material
 
 
-func _set_material(node, material):
+func _set_material(node, material, switch_pixels):
 	if node is MeshInstance and node.mesh:
 		for surface in node.mesh.get_surface_count():
 			if node.mesh.surface_get_format(surface) & Mesh.ARRAY_FORMAT_TEX_UV2:
 				node.mesh.surface_set_material(surface, material)
 				node.set_surface_material(surface, null)
 				node.add_to_group("cloudbake", true)
+				node.set_meta("switch_pixels", switch_pixels)    # of a level of detail; cloudbake_levels.gd reads it
 	for child in node.get_children():
-		_set_material(child, material)
+		_set_material(child, material, switch_pixels)
 
 
 # Godot 3 reads the UV sets 0 and 1 alone. This reads a higher pair from the GLB and stores it in their place.

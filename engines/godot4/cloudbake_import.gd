@@ -20,7 +20,7 @@ func _post_import(scene):
 	if info.is_empty():
 		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
 	var first_set = int(info.get("uv_sets", [0, 1])[0])
-	_set_material(scene, _material(info, first_set), FORMATS[first_set + 1])
+	_set_material(scene, _material(info, first_set), FORMATS[first_set + 1], int(info.get("switch_pixels", 0)))
 	return scene
 
 
@@ -39,7 +39,9 @@ func _info():
 func _material(info, first_set):
 	var path = get_source_file().get_basename() + "_cloud.tres"
 	var material = load(path) if ResourceLoader.exists(path) else ShaderMaterial.new()
-	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake.gdshader")
+	var folder = get_script().resource_path.get_base_dir()
+	if not material.shader or not material.shader.resource_path.begins_with(folder):    # keeps the choice of another shader of the kit
+		material.shader = load(folder + "/cloudbake.gdshader")
 	for parameter in ["exponent", "bias", "extinction"]:
 		if not parameter in info:
 			continue
@@ -48,16 +50,18 @@ func _material(info, first_set):
 			continue
 		material.set_shader_parameter(parameter, info[parameter])
 	material.set_shader_parameter("first_set", first_set)
+	material.set_shader_parameter("of_volume", 1.0 if info.get("fit_to") == "volume" else 0.0)
 	ResourceSaver.save(material, path)
 	material.take_over_path(path)
 	return material
 
 
-func _set_material(node, material, format):
+func _set_material(node, material, format, switch_pixels):
 	if node is MeshInstance3D and node.mesh:
 		for surface in node.mesh.get_surface_count():
 			if node.mesh.surface_get_format(surface) & format:
 				node.mesh.surface_set_material(surface, material)
 				node.add_to_group("cloudbake", true)
+				node.set_meta("switch_pixels", switch_pixels)    # of a level of detail; cloudbake_levels.gd reads it
 	for child in node.get_children():
-		_set_material(child, material, format)
+		_set_material(child, material, format, switch_pixels)

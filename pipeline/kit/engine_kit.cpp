@@ -15,6 +15,7 @@
 #include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "core/text/numbers.h"
+#include "pipeline/kit/gdshader.h"
 #include "pipeline/kit/hlsl.h"
 #include "pipeline/kit/kit_files.h"
 #include "shaders/shader_files.h"
@@ -99,6 +100,11 @@ std::map<std::string, std::string> constantsOf(const AssetInfo& info, const Scen
   return constants;
 }
 
+// Shaders of Godot are templates of GLSL.
+std::string inOwnLanguage(std::string_view name, std::string text) {
+  return name.starts_with("godot") && name.ends_with("shader") ? gdshaderOf(text) : std::move(text);
+}
+
 // Ends a file with a comment that says who made it, unless it says so already.
 std::string withMaker(const std::string& name, std::string text) {
   if (namesMaker(text)) return text;
@@ -143,7 +149,7 @@ std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& in
   std::vector<EngineFile> files;
   for (const KitFile& file : kitFiles())
     if (!engine.empty() && engineOf(file) == engine && nameIn(file) != kDescription)
-      files.push_back({nameIn(file), withMaker(file.name, filledTemplate(withIncludes(file.text), marks))});
+      files.push_back({nameIn(file), withMaker(file.name, inOwnLanguage(file.name, filledTemplate(withIncludes(file.text), marks)))});
   if (files.empty()) throw UsageError(fmt::format("no engine '{}': the engines are {}", engine, fmt::join(engineNames(), ", ")));
   return files;
 }

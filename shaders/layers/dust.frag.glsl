@@ -68,7 +68,7 @@ void main() {
   Dust drawn = dust;
   drawn.samples = max(1, int(float(dust.samples) / fewer));
   Cuts cuts = cutsAt(ivec2(gl_FragCoord.xy), samples_per_side);
-  vec3 view = viewDirection(samplePlace(samples_per_side));
+  vec3 view = viewDirection(samplePlace(gl_FragCoord.xy, samples_per_side));
   float jitter = dust.dither * (jitterAt(dust.seed) - 0.5);
   mat4 ball = mat4(ball_x, ball_y, ball_z, vec4(0.0));
   writeParts(marchDust(eye, view, ball, longest, to_light, light_color, ambient_sky, jitter, cuts, drawn), cuts, 1.0);

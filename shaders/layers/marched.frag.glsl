@@ -8,7 +8,7 @@ vec3 shadowAt(vec3 point) {
 
 void main() {
   Cuts cuts = cutsAt(ivec2(gl_FragCoord.xy), samples_per_side);
-  vec3 view = viewDirection(samplePlace(samples_per_side));
+  vec3 view = viewDirection(samplePlace(gl_FragCoord.xy, samples_per_side));
   float jitter = marched.dither * jitterAt(marched.seed);
   writeParts(marchClouds(eye / marched.scale, view, to_light, theSkyColor(view), jitter, scaledCuts(cuts, marched.scale), fewer > 1.0),
              cuts, marched.scale);

@@ -13,7 +13,7 @@ void main() {
   color = vec4(0.0);
   place = vec4(distance);
   if (distance < 1e30) {
-    vec3 view = viewDirection(samplePlace(samples_per_side));
+    vec3 view = viewDirection(samplePlace(gl_FragCoord.xy, samples_per_side));
     float sun = hit.w * texelFetch(shares, at, 0).r;
     color = vec4(terrainColor(eye + view * distance, distance, hit.xyz, sun, view, to_light, terrain), 1.0);
   }

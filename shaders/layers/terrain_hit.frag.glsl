@@ -12,7 +12,7 @@ void main() {
     ground.shape.normal_octaves = min(ground.shape.normal_octaves, 9);
     ground.march.tolerance = max(ground.march.tolerance, 0.004);
   }
-  vec3 view = viewDirection(samplePlace(samples_per_side));
+  vec3 view = viewDirection(samplePlace(gl_FragCoord.xy, samples_per_side));
   float distance = marchTerrain(eye, view, ground);
   hit = vec4(0.0);
   place = vec4(1e30);

@@ -1,0 +1,289 @@
+# Gives the clouds of a scene the painted look of `cloudbake preview`: attach this script to a Node of the scene. GLES3 only.
+# It draws the clouds of the group "cloudbake" apart, softens, swirls and wears their rims, and puts them over the scene by depth. Colours
+# of sun and sky are those of the first cloud's material. Lengths are of the world unless it says otherwise.
+extends Node
+
+export(int, 1, 8) var samples_per_side = 2    # so many times as wide and high are the clouds drawn before they are averaged
+export(float, 0.1, 1.0) var resolution = 1.0    # of the picture of the clouds, against that of the screen
+export(int, 1, 20) var layer = 20    # only clouds may be in it
+export var time_scale = 1.0
+export var time = 0.0    # seconds; the swirls move with it
+
+export var size = 0.0    # the mean of the clouds' longest sides; 0: measured when clouds come or go
+export var near_distance = @chain_near_distance@
+export var far_distance = @chain_far_distance@    # where the depth is 1; 0: ten sizes beyond near_distance
+
+export(float, 0.0, 1.0) var half_lambert = @light_half_lambert@
+export var volume_gain = @light_volume_gain@    # brightens clouds that were fitted to a volume
+export(float, 0.0, 1.0) var phase_share = @light_phase@
+export(float, 0.0, 0.99) var phase_asymmetry = @light_phase_asymmetry@
+export var phase_limit = @light_phase_limit@
+
+# Of the fog on clouds: by depth, or with distance_fog over 0 by distance.
+export var fog_density = @fog_density@
+export var distance_fog = @fog_per_unit@
+export var fog_color = Vector3(@fog_color@)    # linear
+export var fog_scatter = Vector2(@fog_scatter@, @fog_scatter_exponent@)    # strength and exponent of the light around the sun
+
+# The steps; widths and strengths are of the picture's height.
+export var depth_spread = @chain_depth_spread@
+export var near_width = @chain_near_width@
+export var far_width = @chain_far_width@
+export var tile_size = @chain_tile_size@
+export var far_tiles = @chain_far_tiles@
+export var swirl_strength = @chain_swirl_strength@
+export var far_strength = @chain_far_strength@
+export var swirl_speed = @chain_swirl_speed@    # cycles per second
+export var near_drift = Vector2(@chain_near_drift@)
+export var far_drift = Vector2(@chain_far_drift@)
+export(float, 0.0, 1.0) var dark = @chain_dark@
+export var noise_seed = @chain_seed@
+export var detail_size = @chain_detail_size@    # of the clouds' size
+export(float, 0.0, 0.99) var detail_shrink = @chain_detail_shrink@
+export(float, 0.0, 1.0) var detail_darkening = @chain_detail_darkening@
+
+# Fades, 0: none.
+export var soft_distance = 0.0    # clouds fade in over it before solid things
+export var near_fade = Vector2()    # distances at which clouds are gone, and from which they are whole
+export var far_fade = Vector2()    # distances from which clouds fade, and at which they are gone
+
+const FAR_SIZES = @far_sizes@
+const SWIRL_NOISE = {"octaves": @swirl_octaves@, "gain": @swirl_gain@, "cells": @swirl_cells@, "typical_slope": @swirl_slope@}
+const EROSION_NOISE = {"octaves": @erosion_octaves@, "gain": @erosion_gain@, "fading": Vector2(@erosion_fading@)}
+
+var _clouds = []    # the nodes
+var _shaders = {}    # materials of the clouds, and the shaders that they have by themselves
+var _layers = {}    # nodes, and their layers
+var _cameras = {}    # cameras, and whether they saw the layer of the clouds
+var _measured = 1.0    # the clouds' size
+var _eye = Camera.new()
+var _passes = {}    # viewports by the name of what they make
+var _composite = MeshInstance.new()
+
+
+func _ready():
+	process_priority = 1000    # after everything that moves the camera
+	_eye.cull_mask = _bit()
+	_eye.environment = Environment.new()
+	var clouds = _viewport("clouds")
+	clouds.add_child(_eye)
+	_eye.current = true
+	_pass("drawn", "resolve", {"samples": "clouds"})
+
+	_pass("depths", "weighted", {"channels": "drawn", "of_depth": true})
+	_boxes("depths", "drawn", ["depth_rows", "depth_boxes"])
+	_pass("spread", "spread", {"channels": "drawn", "weighted": "depth_boxes"})
+
+	_pass("lights", "weighted", {"channels": "spread", "of_depth": false})
+	_boxes("lights", "spread", ["light_rows", "light_boxes"])
+	_boxes("light_boxes", "spread", ["light_rows2", "light_boxes2"])
+	_pass("soft", "soft", {"channels": "spread", "weighted": "light_boxes2"})
+
+	_pass("swirled", "distort", {"channels": "soft"})
+	_pass("worn", "erode", {"channels": "swirled"})
+	_make_composite()
+
+
+func _exit_tree():
+	for material in _shaders:
+		material.shader = _shaders[material]
+	for node in _layers:
+		if is_instance_valid(node):
+			node.layers = _layers[node]
+	for camera in _cameras:
+		if is_instance_valid(camera):
+			camera.cull_mask |= _cameras[camera]
+	_cameras.clear()
+	_shaders.clear()
+	_layers.clear()
+	_clouds.clear()
+
+
+func _process(delta):
+	time += delta * time_scale
+	var camera = get_viewport().get_camera()
+	if camera == null:
+		return
+	if not camera in _cameras:
+		_cameras[camera] = camera.cull_mask & _bit()
+	camera.cull_mask &= ~_bit()
+	_find_clouds()
+	var picture = get_viewport().size
+	var small = (picture * resolution).ceil()
+	for name in _passes:
+		_passes[name].size = small * (samples_per_side if name == "clouds" else 1)
+		_passes[name].render_target_update_mode = Viewport.UPDATE_ALWAYS
+	_follow(camera)
+	_set_values(camera, picture, small)
+
+
+func _bit():
+	return 1 << (layer - 1)
+
+
+func _viewport(name):
+	var viewport = Viewport.new()
+	viewport.name = name
+	viewport.usage = Viewport.USAGE_3D_NO_EFFECTS    # that of 2D has 8 bits
+	viewport.hdr = true
+	viewport.keep_3d_linear = true
+	viewport.transparent_bg = true
+	viewport.render_target_v_flip = false
+	viewport.gui_disable_input = true
+	viewport.msaa = Viewport.MSAA_DISABLED
+	_passes[name] = viewport
+	add_child(viewport)
+	return viewport
+
+
+# A step that fills the viewport `name` by a shader, from other viewports and from values.
+func _pass(name, shader, values):
+	var fill = ColorRect.new()
+	fill.anchor_right = 1
+	fill.anchor_bottom = 1
+	fill.material = _material(shader, values)
+	_viewport(name).add_child(fill)
+
+
+func _boxes(image, channels, names):
+	_pass(names[0], "box", {"image": image, "channels": channels, "axis": [1, 0]})
+	_pass(names[1], "box", {"image": names[0], "channels": channels, "axis": [0, 1]})
+
+
+func _material(shader, values):
+	var material = ShaderMaterial.new()
+	material.shader = _shader(shader)
+	for name in values:
+		var value = values[name]
+		material.set_shader_param(name, _passes[value].get_texture() if value is String else value)
+	return material
+
+
+func _shader(name):
+	return load(get_script().resource_path.get_base_dir() + "/painted/%s.shader" % name)
+
+
+func _make_composite():
+	_composite.mesh = QuadMesh.new()
+	_composite.mesh.size = Vector2(2, 2)
+	_composite.material_override = _material("composite", {"channels": "worn", "drawn": "drawn"})
+	_composite.extra_cull_margin = 16384
+	_composite.cast_shadow = GeometryInstance.SHADOW_CASTING_SETTING_OFF
+	add_child(_composite)
+
+
+func _find_clouds():
+	var found = []
+	for node in get_tree().get_nodes_in_group("cloudbake"):
+		if node.get_viewport() == get_viewport():
+			found.append(node)
+	for node in found:
+		if not node in _layers:
+			_layers[node] = node.layers
+			node.layers = _bit()
+		for material in _materials_of(node):
+			if not material in _shaders:
+				_shaders[material] = material.shader
+				material.shader = _shader("channels")
+	if found != _clouds:
+		_clouds = found
+		_measured = _measure()
+
+
+func _materials_of(node):
+	var materials = []
+	var mesh = node.multimesh.mesh if node is MultiMeshInstance else node.mesh
+	if node.material_override:
+		materials.append(node.material_override)
+	else:
+		for surface in mesh.get_surface_count():
+			materials.append(mesh.surface_get_material(surface))
+	var own = []
+	for material in materials:
+		if material is ShaderMaterial:
+			own.append(material)
+	return own
+
+
+# The mean of the longest sides of the clouds' boxes.
+func _measure():
+	var sum = 0.0
+	for node in _clouds:
+		sum += node.get_transformed_aabb().get_longest_axis_size()
+	return sum / _clouds.size() if _clouds else 1.0
+
+
+func _follow(camera):
+	_eye.global_transform = camera.get_camera_transform()
+	_eye.keep_aspect = camera.keep_aspect
+	_eye.set_perspective(camera.fov, camera.near, camera.far)
+	_composite.global_transform = _eye.global_transform
+
+
+# The phases of the swirls: the first, the second, and the weight of the second.
+func _phases():
+	var first = fposmod(time * swirl_speed, 1.0)
+	return Vector3(first, fposmod(first + 0.5, 1.0), abs(2 * first - 1))
+
+
+# How far the near and the far noise have moved, in tiles of their own.
+func _drift():
+	var cycles = time * swirl_speed
+	var near = cycles * near_drift
+	var far = cycles * far_drift * far_tiles
+	return Plane(fposmod(near.x, 1.0), fposmod(near.y, 1.0), fposmod(far.x, 1.0), fposmod(far.y, 1.0))
+
+
+func _set_values(camera, picture, small):
+	var own_size = size if size > 0 else _measured
+	var depth_range = Vector2(near_distance, far_distance if far_distance > 0 else near_distance + FAR_SIZES * own_size)
+	var origin = _clouds[0].global_transform.origin if _clouds else Vector3.ZERO
+	for material in _shaders:
+		for pair in [["depth_range", depth_range], ["painted_near_fade", near_fade], ["painted_half_lambert", half_lambert],
+				["painted_volume_gain", volume_gain]]:
+			material.set_shader_param(pair[0], pair[1])
+	_set_step("drawn", {"samples_per_side": samples_per_side})
+	for name in ["depth_rows", "depth_boxes"]:
+		_set_step(name, {"near_half": depth_spread * small.y, "far_half": depth_spread * small.y})
+	for name in ["light_rows", "light_boxes", "light_rows2", "light_boxes2"]:
+		_set_step(name, {"near_half": near_width * small.y, "far_half": far_width * small.y})
+	_set_step("swirled", {"tile_size": tile_size, "far_tiles": far_tiles, "swirl_strength": swirl_strength, "far_strength": far_strength,
+		"phases": _phases(), "drift": _drift(), "seed": noise_seed, "dark": dark})
+	_set_step("swirled", SWIRL_NOISE)
+	_set_step("worn", {"depth_range": depth_range, "noise_origin": origin, "noise_size": detail_size * own_size, "shrink": detail_shrink,
+		"darkening": detail_darkening, "seed": noise_seed})
+	_set_step("worn", EROSION_NOISE)
+	_set_step("worn", _view(camera, small))
+
+	var values = _view(camera, picture)
+	values.fog_density = fog_density
+	values.distance_fog = distance_fog
+	values.fog_color = fog_color
+	values.fog_scatter = fog_scatter
+	values.depth_range = depth_range
+	values.phase = Vector3(phase_share, phase_asymmetry, phase_limit)
+	values.soft_distance = soft_distance
+	values.far_fade = far_fade
+	if _shaders:
+		for name in ["to_sun", "sun_color", "ambient_sky", "ambient_ground"]:
+			var value = _shaders.keys()[0].get_shader_param(name)
+			if value != null:
+				values[name] = value.normalized() if name == "to_sun" else value
+	_write(_composite.material_override, values)
+
+
+# The uniforms of view.glsl for a picture that shows what the camera sees.
+func _view(camera, picture):
+	var basis = _eye.global_transform.basis
+	var side = picture.y if camera.keep_aspect == Camera.KEEP_HEIGHT else picture.x
+	return {"eye": _eye.global_transform.origin, "right": basis.x, "up": basis.y, "forward": -basis.z, "picture": picture,
+		"per_pixel": 2 * tan(deg2rad(camera.fov) / 2) / side}
+
+
+func _set_step(step, values):
+	_write(_passes[step].get_child(0).material, values)
+
+
+func _write(material, values):
+	for name in values:
+		material.set_shader_param(name, values[name])

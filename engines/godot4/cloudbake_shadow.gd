@@ -1,0 +1,44 @@
+# Casts the shadow of a cloud on everything below it: attach this script to a MeshInstance3D, which needs no mesh, and give it the two files
+# that `cloudbake shadow` writes. The shadow lies where the asset was when the picture was made.
+extends MeshInstance3D
+
+@export var picture: Texture2D    # import it without compression and without mipmaps
+@export_file("*.json") var frame: String    # for an exported game, add *.json to the files that are exported
+@export_range(0.0, 1.0) var shadow_strength = 1.0
+
+
+func _ready():
+	mesh = QuadMesh.new()
+	mesh.size = Vector2(2, 2)    # it covers the screen
+	extra_cull_margin = 16384
+	cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
+	material_override = ShaderMaterial.new()
+	material_override.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake_shadow.gdshader")
+	material_override.render_priority = -1    # before other transparent things
+	var file = FileAccess.open(frame, FileAccess.READ)
+	if file == null:
+		push_error("%s: cannot be read; `cloudbake shadow` writes it beside the picture" % frame)
+		return
+	var values = JSON.parse_string(file.get_as_text())
+	_set_value("picture", picture)
+	_set_value("origin", _vector(values.origin))
+	_set_value("right_over_width", _vector(values.right) / values.width)
+	_set_value("up_over_height", _vector(values.up) / values.height)
+	_set_value("to_sun", _vector(values.to_sun))
+	_set_value("top", values.top)
+	_set_value("bottom", values.bottom)
+
+
+func _process(_delta):
+	_set_value("shadow_strength", shadow_strength)
+	var camera = get_viewport().get_camera_3d()
+	if camera:
+		global_transform.origin = camera.global_transform.origin
+
+
+func _vector(list):
+	return Vector3(list[0], list[1], list[2])
+
+
+func _set_value(parameter, value):
+	material_override.set_shader_parameter(parameter, value)
