@@ -45,9 +45,9 @@ std::string withoutSuffix(Token number) {
   return "uint(" + std::to_string(static_cast<int32_t>(bits)) + ")";
 }
 
-class Translation {
+class GodotTranslation {
  public:
-  explicit Translation(std::string_view glsl) : tokens_(tokensOf(glsl)), at_(0), end_(tokens_.size()) {}
+  explicit GodotTranslation(std::string_view glsl) : tokens_(tokensOf(glsl)), at_(0), end_(tokens_.size()) {}
 
   std::string run() {
     while (at_ < end_) step();
@@ -210,6 +210,6 @@ class Translation {
 
 }  // namespace
 
-std::string gdshaderOf(std::string_view glsl) { return Translation(glsl).run(); }
+std::string gdshaderOf(std::string_view glsl) { return GodotTranslation(glsl).run(); }
 
 }  // namespace cloudbake
