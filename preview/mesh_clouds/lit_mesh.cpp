@@ -97,6 +97,16 @@ class VertexTransmittance {
   size_t coefficients_;  // per vertex; 0: lobes
 };
 
+// The light of all lamps at a vertex, by its lobe.
+Vec3 lightOfLamps(const Instance& instance, size_t vertex, Vec3 normal, const LightSettings& light) {
+  const Lobe lobe = transformedLobe(instance.mesh->lobes[vertex], instance.to_world);
+  const Vec3 place = transformPoint(instance.to_world, instance.mesh->surface.positions[vertex]);
+  Vec3 sum;
+  for (const Lamp& lamp : light.lamps)
+    sum += lampLight(lamp, lobe, place, normal, light.half_lambert, worldShape(instance), worldExtinction(instance, light));
+  return sum;
+}
+
 // Places one instance in the frame of `lit`, lights it, and appends it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
   const BakedMesh& mesh = *instance.mesh;
@@ -109,6 +119,11 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   const Vec3 to_light = keyLight(light.sky).direction;
   const float gain = mesh.info.volume ? light.volume_gain : 1;
   for (size_t i = 0; i < mesh.lobes.size(); ++i) {
+    if (light.shown != ShownLight::kSunAndSky) {
+      const Vec3 lamps = lightOfLamps(instance, i, normals[i], light);
+      lit.shades.push_back(light.shown == ShownLight::kLampsRedGreen ? Shade{lamps.x, lamps.y} : Shade{lamps.z, 0});
+      continue;
+    }
     const float share = instance.sun_shares.empty() ? 1 : instance.sun_shares[i];
     const float sun = std::min(gain * transmittance.towards(i, to_light), 1.0F);
     lit.shades.push_back({sun * surfaceFactor(normals[i], to_light, light.half_lambert) * share,
