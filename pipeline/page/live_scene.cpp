@@ -221,10 +221,10 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
   const auto addLamp = [&](const char* table, const auto& keys, size_t index, std::initializer_list<const char*> names) {
     for (const char* name : names) all.add(table, keys, {{name, {"scene", "lamps", index, name}}});
   };
-  if (!scene.lamps.empty()) addLamp("lamp", lampKeys(), 0, {"color", "strength", "range", "radius"});
-  if (!scene.lamps.empty() && !scene.lamps.front().look_at) addLamp("lamp", lampKeys(), 0, {"place"});
+  if (!scene.lamps.empty()) addLamp("[lamp]", lampKeys(), 0, {"color", "strength", "range", "radius"});
+  if (!scene.lamps.empty() && !scene.lamps.front().look_at) addLamp("[lamp]", lampKeys(), 0, {"place"});
   if (!scene.lightning.empty())
-    addLamp("lightning", lightningKeys(), scene.lamps.size(), {"color", "strength", "range", "radius", "decay"});
+    addLamp("[lightning]", lightningKeys(), scene.lamps.size(), {"color", "strength", "range", "radius", "decay"});
   all.add("fog", fogKeys(), {{"per_unit", {"scene", "distance_fog"}}});
   all.add("fog", scatterKeys(), {{"scatter", {"scene", "fog_scatter", 0}}, {"scatter_exponent", {"scene", "fog_scatter", 1}}});
   if (scene.fog.color != scene.light.sky.colors.horizon) all.add("fog", fogKeys(), {{"color", {"scene", "fog_color"}}});
