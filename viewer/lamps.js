@@ -1,6 +1,6 @@
 // Lamps and lightning: lampsAt of preview/lamp.h.
 
-// The place and the brightness of what shines at a time.
+/** The place and the brightness of lightning at a time. @param {Lamp} lamp @param {number} now */
 function flashAt({ flashes, every, decay, dark }, now) {
   const stretch = every ? Math.floor(now / every) : 0, { place, strokes } = flashes[stretch % flashes.length], since = now - stretch * every;
   const sum = strokes.reduce((all, [start, strength]) => all + (since >= start ? strength * Math.exp((start - since) / decay) : 0), 0);
