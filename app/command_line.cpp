@@ -5,6 +5,7 @@
 #include "pipeline/asset/levels.h"
 #include "pipeline/kit/engine_kit.h"
 #include "pipeline/options/resolve.h"
+#include "pipeline/picture/shadow_picture.h"
 #include "pipeline/scene/scene_file.h"
 #include "pipeline/sources/grown.h"
 
@@ -49,6 +50,7 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
     for (size_t level = 1; level <= scratch.mesh.levels.size(); ++level)
       files.outputs.push_back({levelFile(line.output, level), "--lods", "", true});
   }
+  if (command.bit == kShadow && !line.output.empty()) files.outputs.push_back({shadowFrameFile(line.output), "-o", "", true});
   std::istringstream names(command.output_names);
   if (!line.output.empty())
     for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o", "", true});

@@ -93,6 +93,7 @@ ExitCode runBake(const CommandLine& line);
 ExitCode runPreview(const CommandLine& line);
 ExitCode runView(const CommandLine& line);
 ExitCode runShader(const CommandLine& line);
+ExitCode runShadow(const CommandLine& line);
 ExitCode runCheck(const CommandLine& line);
 ExitCode runMeasure(const CommandLine& line);
 ExitCode runBatch(const CommandLine& line);

@@ -58,6 +58,10 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake shader godot4 cloud.glb -o project/cloudbake\n  cloudbake shader unity cloud.glb -o Assets/Cloudbake\n"
      "  cloudbake shader npm cloud.glb --scene scene.toml -o package\n  cloudbake shader glsl -o shaders",
      "DIR", runShader, "folder to write the files to"},
+    {kShadow, "shadow", "ASSET.glb", "baked asset that casts the shadow",
+     "draw the shadow that a baked asset casts under a sun, as a grey PNG for decals and light cookies",
+     "Examples:\n  cloudbake shadow cloud.glb -o shadow.png\n  cloudbake shadow cloud.glb --sun 0,90 --size 512 -o noon.png", "FILE",
+     runShadow, "file to write; its frame is written beside it, as .json", ".png"},
     {kCheck, "check", "ASSET.glb", "baked asset to check",
      "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"

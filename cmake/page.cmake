@@ -14,9 +14,12 @@ file(GLOB page_shaders CONFIGURE_DEPENDS shaders/common/*.glsl shaders/functions
 #   cloudbake_page(OUTPUT MODULE SHADER…)
 function(cloudbake_page output module)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${module} ${page_modules} ${ARGN})
+  list(FILTER ARGN EXCLUDE REGEX "/(cast_shadow|soft)\\.glsl$")  # for engines
   foreach(file ${ARGN})
     cmake_path(GET file STEM LAST_ONLY name)
     file(READ ${file} text)
+    string(REGEX REPLACE "[ ]*//[^\n]*" "" text "${text}")  # comments are for readers of the sources
+    string(REGEX REPLACE "\n\n+" "\n" text "${text}")
     string(APPEND SCRIPTS "<script type=\"x-shader/x-fragment\" id=\"shader ${name}\">${text}</script>\n")
   endforeach()
   execute_process(COMMAND ${ESBUILD} ${module} --bundle --format=esm --charset=utf8 --log-level=warning

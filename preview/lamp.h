@@ -8,7 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
+#include "core/keys.h"
 #include "core/lobe_lighting.h"
 #include "core/types.h"
 #include "core/vec3.h"
@@ -47,5 +52,50 @@ inline Vec3 lampLight(const Lamp& lamp, const Lobe& lobe, Vec3 place, Vec3 norma
   const float light = lampFalloff(away, lamp.range, lamp.radius) * lampCone(to_lamp, lamp.axis, lamp.cone);
   return lamp.color * (light * surfaceFactor(normal, to_lamp, half_lambert) * lampTransmittance(lobe, to_lamp, away, shape, extinction));
 }
+
+/// So many lamps and lightnings a scene may have.
+inline constexpr size_t kMostLamps = 16;
+
+/// A lamp of a scene.
+struct LampSettings {
+  Vec3 place, color{1, 1, 1};
+  float strength = 1, range = 0, radius = 0.1F;
+  std::optional<Vec3> look_at;                   ///< makes it a spotlight
+  float inner_degrees = 15, outer_degrees = 30;  ///< from its axis, inner < outer
+};
+/// Its keys in a scene file.
+const Keys<LampSettings>& lampKeys();
+
+/// Flashes of lightning, which light clouds from inside. Everything follows from the seed and the time.
+struct LightningSettings {
+  Vec3 place, spread, color{0.8F, 0.87F, 1};
+  float strength = 1, range = 0, radius = 0.1F;
+  float every_seconds = 6;  ///< each stretch of this length has one flash
+  std::optional<float> at;  ///< seconds: one flash, and no others
+  int most_strokes = 8;
+  float decay_seconds = 0.05F;
+  uint32_t seed = 0;
+};
+/// Its keys in a scene file.
+const Keys<LightningSettings>& lightningKeys();
+
+/// Flashes that are different; then the first comes again.
+inline constexpr int kFlashes = 16;
+/// Less than this share of a first stroke counts as dark.
+inline constexpr float kDarkFlash = 1e-3F;
+
+/// A flash: its place, and the return strokes with their starts, in seconds since the stretch of the flash began, and their strengths.
+struct Flash {
+  Vec3 place;
+  std::vector<Vec2> strokes;
+};
+/// kFlashes flashes, or the one of `at`, whose seconds are those of the scene.
+std::vector<Flash> flashesOf(const LightningSettings& settings);
+/// The light of a flash at these seconds, relative to that of its first stroke.
+float flashBrightness(const Flash& flash, float seconds, float decay_seconds);
+
+Lamp lampOf(const LampSettings& settings);
+/// The lamps and flashes that shine at a time of the scene.
+std::vector<Lamp> lampsAt(std::span<const LampSettings> lamps, std::span<const LightningSettings> lightning, double seconds);
 
 }  // namespace cloudbake

@@ -4,6 +4,9 @@ import { add, clamp } from './vectors.js';
 
 export const CHANNELS = ['sun', 'sky', 'opacity', 'depth'];
 
+// What two of the channels are, as a prefix of the names of targets: the light of sun and sky, and that of lamps: red and green, then blue.
+export const SHOWN = ['', 'red green ', 'blue '];
+
 const NOTHING = [0, 0, 0, 0];
 
 // Two boxes, along rows and along columns.
@@ -73,12 +76,13 @@ export const STEPS = {
 };
 
 // The colours of the clouds, over the sky or as a layer.
-function composite({ gpu, view, look, scene }, channels) {
+function composite({ gpu, view, look, scene, shown }, channels) {
   const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view, distance_fog = scene.distance_fog * fog;
   const values = {
     ...view, to_sun: view.to_light, sun_color: view.light_color, fog_density: fog_density * fog, distance_fog,
     fog_scatter: scene.fog_scatter,
     phase: [clamp(share * shine, 0, 1), ...phase], channels, drawn: 'drawn', background: 'background',
+    has_lamps: shown.length > 1, lamps_red_green: (shown[1] ?? '') + channels, lamps_blue: (shown[2] ?? '') + channels,
   };
   const files = ['light', 'sky', 'view', 'sky_uniforms', 'channel_sum', 'composite'];
   if (!scene.layers) {
@@ -94,7 +98,7 @@ export function drawChain(renderer) {
   const { gpu, look, view } = renderer, channel = CHANNELS.indexOf(view.show);
   let channels = 'drawn', shown = 'drawn';
   for (const [name, step] of Object.entries(STEPS[look.kind])) {
-    step(renderer, channels, name);
+    for (const light of renderer.shown) step(renderer, light + channels, light + name);
     channels = name;
     if (view.show === 'picture' || view.show === name) shown = name;
   }

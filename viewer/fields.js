@@ -145,15 +145,15 @@ export class Fields {
     return all;
   }
 
-  /** The clouds as triangles; `place`: of the sample in the pixel. @param {View} view @param {Look} look */
-  draw(fragment, view, look, size, place) {
+  /** The clouds as triangles; `place`: of the sample in the pixel; `shown`: SHOWN of chains.js. @param {View} view @param {Look} look */
+  draw(fragment, view, look, size, place, shown) {
     const { gl } = this.gpu, { scene, scene: { scattered: { arrays, arrays: { triangles } } } } = this, type = indexType(gl, arrays);
     const { half_lambert, half_lambert_sky, volume_gain } = look, of_error = view.show === 'error';
     // Of the other lights nothing is known here; harmonics have all their orders.
     const known = light => light.startsWith('harmonics') ? 'harmonics' : light === 'none' ? light : 'lobe';
     const lit = { ...view, light: known(view.light), against: known(view.against) };
-    const values = { ...view, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place) };
-    const program = this.gpu.program(fragment, ['channels'], 'field.vert', ['lobe', 'harmonics']);
+    const values = { ...view, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place, shown) };
+    const program = this.gpu.program(fragment, ['channels'], 'field.vert', ['lobe', 'harmonics', 'lamp', 'lamps']);
     gl.bindVertexArray(this.meshes);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);
     for (const { part, first, count } of this.groups) {

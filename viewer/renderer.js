@@ -1,6 +1,6 @@
 // The looks of `preview` in WebGL2. A picture is drawn sample by sample and is final once every pixel has all of them.
 
-import { CHANNELS, drawChain } from './chains.js';
+import { CHANNELS, SHOWN, drawChain } from './chains.js';
 import { Fields } from './fields.js';
 import { drawPlainSample } from './plain.js';
 import { Vertices } from './vertices.js';
@@ -48,7 +48,7 @@ export class Renderer {
     const key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, layers && [eye, fewer, layers.settings]]);
     if (key !== this.skyKey) this.drawSky();
     this.skyKey = key;
-    gpu.clear([gpu.target('sums 0', this.drawnSize)], [0, 0, 0, 0]);
+    for (const light of this.shown) gpu.clear([gpu.target(`${light}sums 0`, this.drawnSize)], [0, 0, 0, 0]);
   }
 
   // The sky changes with camera and sun alone.
@@ -72,6 +72,12 @@ export class Renderer {
 
   // Whether the picture is composed of layers; single channels and the error are of the clouds alone.
   get isLayered() { return !!this.layers && this.view.show !== 'error' && !CHANNELS.includes(this.view.show); }
+
+  // The lights that are drawn and go through the chain: those of lamps only while one shines.
+  get shown() {
+    const { view: { lamp_count, show }, look } = this;
+    return lamp_count && look.chain && show !== 'error' && !CHANNELS.includes(show) ? SHOWN : SHOWN.slice(0, 1);
+  }
 
   get hasClouds() { return !!this.fields || this.scene.parts.some(part => part.count); }
 
@@ -112,19 +118,21 @@ export class Renderer {
       const place = look.samples[this.samples].map(x => x * fineness), pixel = place.map(Math.floor);
       const in_pixel = place.map((x, i) => x - pixel[i]);
       const from = `sums ${this.samples % 2}`, to = `sums ${(this.samples + 1) % 2}`;
-      if (look.kind === 'plain') drawPlainSample(this, in_pixel);
-      else this.drawSurface(in_pixel, { width: size.width * fineness, height: size.height * fineness });
-      this.fillBox([gpu.target(to, size)], gpu.program('accumulate.frag'),
-        { sums: from, samples: 'sample', share: 1 / all, fineness, pixel: [pixel[0], fineness - 1 - pixel[1]] }, [0, 0, 0, 0]);
+      for (const [shown, light] of this.shown.entries()) {
+        if (look.kind === 'plain') drawPlainSample(this, in_pixel);
+        else this.drawSurface(in_pixel, { width: size.width * fineness, height: size.height * fineness }, shown);
+        this.fillBox([gpu.target(light + to, size)], gpu.program('accumulate.frag'),
+          { sums: light + from, samples: 'sample', share: 1 / all, fineness, pixel: [pixel[0], fineness - 1 - pixel[1]] }, [0, 0, 0, 0]);
+      }
     }
   }
 
   // The nearest surface at one sample of each pixel.
-  drawSurface(place, size) {
+  drawSurface(place, size, shown) {
     const { gpu } = this, sample = gpu.target('sample', size), depth = gpu.target('depth 0', size, gpu.gl.DEPTH_COMPONENT32F);
     gpu.drawNearest([sample], depth, () => {
-      this.vertices.draw('cloud.frag', this.view, size, place);
-      this.fields?.draw('cloud.frag', this.view, this.look, size, place);
+      this.vertices.draw('cloud.frag', this.view, size, place, {}, shown);
+      this.fields?.draw('cloud.frag', this.view, this.look, size, place, shown);
     });
   }
 
@@ -147,7 +155,9 @@ export class Renderer {
 
   // Their mean, and the chain.
   drawMean() {
-    this.fillBox([this.gpu.target('drawn', this.drawnSize)], this.gpu.program('mean.frag'), this.sums);
+    const { gpu, sums: { sums, share } } = this;
+    for (const light of this.shown)
+      this.fillBox([gpu.target(`${light}drawn`, this.drawnSize)], gpu.program('mean.frag'), { sums: light + sums, share });
     drawChain(this);
   }
 }

@@ -44,6 +44,12 @@ interface Lattice { origin: Vec3; cell_size: number; cells: [number, number, num
 
 interface Caster { origin: Vec3; cell_size: number; cells: [number, number, number]; fractions: Uint8Array }
 
+/** A lamp, or flashes of lightning: of every 'every' seconds one, of which each stroke has a start and a strength. */
+interface Lamp {
+  place: Vec3; color: Vec3; strength: number; range: number; radius: number; axis: Vec3; cone: number[];
+  flashes?: { place: Vec3; strokes: number[][] }[]; every?: number; decay?: number; dark?: number;
+}
+
 interface Day { hour: number; seconds: number; noon: number[]; places_moon?: boolean; turns_moon?: boolean }
 
 type Limits = [low: number, high: number, step: number, help: string];
@@ -73,6 +79,7 @@ interface Scene {
   extinction_times_size: number; far_sides: number; distance_fog: number; fog_color?: Vec3;
   casters: Omit<Caster, 'fractions'>[];
   shadows: { strength: number; softness: number };
+  lamps?: Lamp[];
   parts: Part[]; corners: Vec3[];
   mesh?: any;
   scattered?: ScatteredClouds;

@@ -41,11 +41,11 @@ export function litBy(scene, part, view, volume_gain, latticed) {
 }
 
 /**
- * The uniforms of a sample at a place in the pixel.
+ * The uniforms of a sample at a place in the pixel. The light of lamps is the same on both sides of the divider, and may be more than 1.
  * @param {View} view @param {{ width: number, height: number }} size @param {number[]} place
  */
-export const sampleOf = (view, { width, height }, [x, y]) =>
-  ({ place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width });
+export const sampleOf = (view, { width, height }, [x, y], shown = 0) =>
+  ({ place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: shown ? 1e9 : view.split * width, most: shown ? 6e4 : 1, shown });
 
 /** The triangles of an array of vertices as WebGL takes them. @param {WebGL2RenderingContext} gl @param {Arrays} arrays */
 export const indexType = (gl, { triangles }) => triangles.BYTES_PER_ELEMENT === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT;
@@ -64,9 +64,15 @@ export class Vertices {
     gl.vertexAttrib1f(LOCATIONS.sun_share, 1);  // of clouds in nobody's shadow
     if (arrays.harmonicsPerVertex) this.setHarmonics(arrays);
     this.drawn = gl.createVertexArray();
+    if (scene.lamps) this.setAttribute('mesh_position', 3, arrays.positions);
     gl.bindVertexArray(this.drawn);
     this.setAttribute('position', 3, arrays.positions);
-    this.setAttribute('light', 4, new Float32Array(4 * arrays.positions.length / 3));
+    const dark = new Float32Array(4 * arrays.positions.length / 3);
+    this.setAttribute('light', 4, dark);
+    if (scene.lamps) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer('lamps'));
+      gl.bufferData(gl.ARRAY_BUFFER, dark, gl.STATIC_DRAW);
+    }
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffer('triangles'));
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, arrays.triangles, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
@@ -179,22 +185,24 @@ export class Vertices {
     this.castShadows(view, layers);
     if (volume && [view.light, view.against].includes('truth')) this.see(view, volume);
     if (layers && [view.light, view.against].includes('lattice')) this.takeLattices(view, layers);
-    const { gl } = this.gpu, program = this.gpu.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
-    const { to_light, light, against, density, k, b, show } = view, of_error = show === 'error';
-    const chosen = [to_light, light, against, density, k, b, half_lambert, half_lambert_sky, volume_gain, of_error];
+    const { gl } = this.gpu, files = ['lobe', 'harmonics', 'lamp', 'lamps'];
+    const program = this.gpu.program('depth.frag', [], 'light.vert', files, ['shade']);
+    const { to_light, light, against, density, k, b, show, lamps } = view, of_error = show === 'error';
+    const chosen = [to_light, light, against, density, k, b, half_lambert, half_lambert_sky, volume_gain, of_error, lamps];
     const key = JSON.stringify([this.sharesKey, this.seenKey, this.latticesKey, ...chosen]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
     gl.bindVertexArray(this.lit);
     gl.enable(gl.RASTERIZER_DISCARD);
-    for (const part of this.scene.parts) {
-      this.gpu.use(program, { ...view, ...litBy(this.scene, part, view, volume_gain, this.latticed), to_sun: to_light, of_error,
-        half_lambert, half_lambert_sky });
-      gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers.light, 16 * part.first_vertex, 16 * part.vertices);
-      gl.beginTransformFeedback(gl.POINTS);
-      gl.drawArrays(gl.POINTS, part.first_vertex, part.vertices);
-      gl.endTransformFeedback();
-    }
+    for (const buffer of view.lamp_count ? ['light', 'lamps'] : ['light'])
+      for (const part of this.scene.parts) {
+        this.gpu.use(program, { ...view, ...litBy(this.scene, part, view, volume_gain, this.latticed), to_sun: to_light, of_error,
+          half_lambert, half_lambert_sky, of_lamps: buffer === 'lamps' });
+        gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers[buffer], 16 * part.first_vertex, 16 * part.vertices);
+        gl.beginTransformFeedback(gl.POINTS);
+        gl.drawArrays(gl.POINTS, part.first_vertex, part.vertices);
+        gl.endTransformFeedback();
+      }
     gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, null);
     gl.disable(gl.RASTERIZER_DISCARD);
     gl.bindVertexArray(null);
@@ -214,11 +222,14 @@ export class Vertices {
     return ranges;
   }
 
-  // The clouds as triangles; `place`: of the sample in the pixel.
-  draw(fragment, view, size, place, values = {}) {
+  // The clouds as triangles; `place`: of the sample in the pixel; `shown`: SHOWN of chains.js.
+  draw(fragment, view, size, place, values = {}, shown = 0) {
     const { gl } = this.gpu, { arrays, arrays: { triangles } } = this.scene, type = indexType(gl, arrays);
-    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert'), { ...view, ...values, ...sampleOf(view, size, place) });
+    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert'), { ...view, ...values, ...sampleOf(view, size, place, shown) });
     gl.bindVertexArray(this.drawn);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[shown ? 'lamps' : 'light']);
+    gl.vertexAttribPointer(LOCATIONS.light, shown ? 2 : 4, gl.FLOAT, false, 16, shown === 2 ? 8 : 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
     for (const [first, count] of this.rangesIn(view)) gl.drawElements(gl.TRIANGLES, count, type, first * triangles.BYTES_PER_ELEMENT);
     gl.bindVertexArray(null);
   }

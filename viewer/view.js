@@ -2,6 +2,7 @@
 
 import { parabolaAt } from './hours.js';
 import { keyLight } from './key_light.js';
+import { lampsAt } from './lamps.js';
 import { add, clamp, cross, directionFromAngles, dot, normalize } from './vectors.js';
 
 // The axes of a camera that is rolled by an angle.
@@ -43,7 +44,7 @@ export function viewOf(scene, look, { width, height }, layers, { camera, sun, ti
   const time = now + (scene.time_offset ?? 0), cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = fract(cycles);
   return {
     ...chosen, time, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun,
-    ...keyLight(to_sun, colors, scene.sky.viewer_height, layers?.moon), ...layers?.skyValues,
+    ...keyLight(to_sun, colors, scene.sky.viewer_height, layers?.moon), ...layers?.skyValues, ...lampsAt(scene, now),
     eye: camera.from, ...axes, picture: [width, height], per_pixel: 2 * half / height, scale: [height / (half * width), 1 / half],
     clip: clipOf(scene.corners, camera.from, axes.forward), depth_range: scene.depth_range,
     mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],

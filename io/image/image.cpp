@@ -41,6 +41,15 @@ void appendBytes(void* context, void* data, int size) {
   static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
 }
 
+constexpr size_t kAfterHeader = 33;
+
+std::string pngOf(int width, int height, int channels, const std::vector<uint8_t>& bytes) {
+  std::string png;
+  if (!stbi_write_png_to_func(appendBytes, &png, width, height, channels, bytes.data(), width * channels)) throw std::bad_alloc();
+  png.insert(kAfterHeader, pngChunk("tEXt", std::string("Software") + '\0' + std::string(kMaker)));
+  return png;
+}
+
 }  // namespace
 
 std::vector<uint8_t> rgbBytes(const Image& image) {
@@ -53,12 +62,13 @@ std::vector<uint8_t> rgbBytes(const Image& image) {
   return bytes;
 }
 
-std::string encodePng(const Image& image) {
-  const std::vector<uint8_t> bytes = rgbBytes(image);
-  std::string png;
-  if (!stbi_write_png_to_func(appendBytes, &png, image.width, image.height, 3, bytes.data(), image.width * 3)) throw std::bad_alloc();
-  constexpr size_t kAfterHeader = 33;
-  png.insert(kAfterHeader, pngChunk("tEXt", std::string("Software") + '\0' + std::string(kMaker)));
+std::string encodePng(const Image& image) { return pngOf(image.width, image.height, 3, rgbBytes(image)); }
+
+std::string encodeGreyPng(int width, int height, const std::vector<uint8_t>& grey, std::string_view keyword, std::string_view text) {
+  if (width < 1 || height < 1 || grey.size() != size_t(width) * size_t(height))
+    throw std::invalid_argument("encodeGreyPng: a picture needs width·height pixels, and at least one");
+  std::string png = pngOf(width, height, 1, grey);
+  png.insert(kAfterHeader, pngChunk("tEXt", std::string(keyword) + '\0' + std::string(text)));
   return png;
 }
 

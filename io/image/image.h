@@ -17,6 +17,10 @@ namespace cloudbake {
 /// pixels or with a wrong pixel count.
 std::string encodePng(const Image& tone_mapped_srgb);
 
+/// The bytes of a grey PNG with 8 bits per pixel: width × height bytes, row by row from the top. `text` is kept in it under this keyword of
+/// Latin letters. Throws as encodePng does.
+std::string encodeGreyPng(int width, int height, const std::vector<uint8_t>& grey, std::string_view keyword, std::string_view text);
+
 /// The bytes of a baseline JPEG of the same values, for pages where size counts. `quality` is 1 to 100; up to 90, colours have half the
 /// resolution. Throws as encodePng does.
 std::string encodeJpeg(const Image& tone_mapped_srgb, int quality);

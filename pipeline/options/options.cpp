@@ -221,7 +221,7 @@ constexpr const char *kOfRays = " needs --method rays", *kOfComparison = " needs
 
 // `view` bakes what it watches.
 constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
-                   kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck, kAssets = kGrow | kBake | kBatch;
+                   kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck | kShadow, kAssets = kGrow | kBake | kBatch;
 constexpr unsigned kFromSurface = kAnyInput & ~kFromVolume, kFromGrowth = kFromRules | kFromSpheres;
 
 constexpr const char *kGeneral = "Options", *kOfBake = "Bake", *kOfLobe = "Lobes", *kOfMesh = "Mesh", *kOfInput = "Input",
@@ -833,6 +833,28 @@ const Option kOptions[] = {
      .commands = kDraws,
      .common = kDraws,
      .help = "azimuth (0 = behind the viewer, 90 = right) and elevation, degrees; 105,30 with --look plain and --compare"},
+    {.name = "sun",
+     .unit = "AZ,EL",
+     .value = anglesAt<&P::sun_azimuth_degrees, &P::sun_elevation_degrees>(),
+     .group = kOfPicture,
+     .commands = kShadow,
+     .common = kShadow,
+     .help = "azimuth (0 = behind the viewer, 90 = right, as in preview) and elevation of the light, degrees"},
+    {.name = "size",
+     .unit = "N",
+     .value = numberAt<&S::shadow, &ShadowPictureSettings::size>(8, 2048),
+     .group = kOfPicture,
+     .commands = kShadow,
+     .common = kShadow,
+     .help = "pixels to a side of the picture"},
+    {.name = "extinction",
+     .unit = "X",
+     .value = numberAt<&S::shadow, &ShadowPictureSettings::extinction>(0, kHuge),
+     .group = kOfPicture,
+     .commands = kShadow,
+     .common = kShadow,
+     .help = "extinction per world unit",
+     .fallback = "as the asset records it, else 7 / longest side"},
     {.name = "camera",
      .unit = "AZ,EL",
      .value = anglesAt<&P::camera_azimuth_degrees, &P::camera_elevation_degrees>(),
@@ -1153,7 +1175,7 @@ const Option kOptions[] = {
     {.name = "force",
      .value = flagAt<kRun, &RunSettings::force>(),
      .group = kGeneral,
-     .commands = kGrow | kBake | kPreview | kMeasure | kShader | kBatch,
+     .commands = kGrow | kBake | kPreview | kMeasure | kShader | kShadow | kBatch,
      .common = kBatch | kShader,
      .bits = kOfRun | kOfOutputFiles | kNotOnPage,
      .help = "also replace files of other programs where cloudbake makes the names; batch also bakes what is up to date"},

@@ -15,7 +15,17 @@
 namespace cloudbake {
 
 /// The commands that accept an option, as bits.
-enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16, kCheck = 32, kView = 64, kShader = 128 };
+enum Command : unsigned {
+  kGrow = 1,
+  kBake = 2,
+  kPreview = 4,
+  kMeasure = 8,
+  kBatch = 16,
+  kCheck = 32,
+  kView = 64,
+  kShader = 128,
+  kShadow = 256
+};
 
 /// Where an option is offered, as bits.
 enum OptionBits : unsigned {

@@ -172,6 +172,12 @@ struct PictureSettings {
   uint64_t memory_limit = kMemoryLimit;
 };
 
+/// The picture of a shadow that `shadow` writes.
+struct ShadowPictureSettings {
+  int size = 256;                   ///< pixels to a side
+  std::optional<float> extinction;  ///< σ per world unit; unset: that of the asset
+};
+
 /// The largest errors against exact chords that an asset may have.
 struct ErrorBounds {
   std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
@@ -229,6 +235,7 @@ struct Settings {
   LobeSettings lobe;
   OutputSettings output;
   PictureSettings picture;
+  ShadowPictureSettings shadow;
   std::optional<std::filesystem::path> scene;  ///< which a bake or a kit is for, or which is drawn
   JudgeSettings judge;
   BatchSettings batch;

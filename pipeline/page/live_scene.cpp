@@ -36,6 +36,8 @@ void refuseWhatIsNotShown(const SceneFile& scene) {
     throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]], [[marched]] or [[dust]]");
   if (noise_clouds > kMostNoiseClouds)
     throw UsageError("view shows at most eight clouds of [[slab]], [[marched]] and [[dust]]: leave some out");
+  if (scene.view.plain && !(scene.lamps.empty() && scene.lightning.empty()))
+    throw UsageError("view shows lamps and lightning in the painted look: leave out --look plain");
   if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
 }
 
@@ -216,6 +218,13 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
   for (const char* name : {"half_lambert", "half_lambert_sky", "volume_gain"}) all.add("light", lightKeys(), {{name, {"look", name}}});
   all.add("light", shadowKeys(),
           {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
+  const auto addLamp = [&](const char* table, const auto& keys, size_t index, std::initializer_list<const char*> names) {
+    for (const char* name : names) all.add(table, keys, {{name, {"scene", "lamps", index, name}}});
+  };
+  if (!scene.lamps.empty()) addLamp("[lamp]", lampKeys(), 0, {"color", "strength", "range", "radius"});
+  if (!scene.lamps.empty() && !scene.lamps.front().look_at) addLamp("[lamp]", lampKeys(), 0, {"place"});
+  if (!scene.lightning.empty())
+    addLamp("[lightning]", lightningKeys(), scene.lamps.size(), {"color", "strength", "range", "radius", "decay"});
   all.add("fog", fogKeys(), {{"per_unit", {"scene", "distance_fog"}}});
   all.add("fog", scatterKeys(), {{"scatter", {"scene", "fog_scatter", 0}}, {"scatter_exponent", {"scene", "fog_scatter", 1}}});
   if (scene.fog.color != scene.light.sky.colors.horizon) all.add("fog", fogKeys(), {{"color", {"scene", "fog_color"}}});
@@ -244,6 +253,34 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
     all.add("chain", erodeKeys(), {{"detail_shrink", chain("erode", "shrink")}, {"detail_darkening", chain("erode", "darkening")}});
   }
   return all.take();
+}
+
+// --- Lamps ---
+
+Json jsonOf(const Lamp& lamp, Vec3 color, float strength) {
+  return {{"place", jsonOf(lamp.place)},
+          {"color", jsonOf(color)},
+          {"strength", shortest(strength)},
+          {"range", shortest(lamp.range)},
+          {"radius", shortest(lamp.radius)},
+          {"axis", jsonOf(lamp.axis)},
+          {"cone", {shortest(lamp.cone.x), shortest(lamp.cone.y)}}};
+}
+
+// Lamps, then lightning with all of its flashes.
+Json lampsJson(const SceneFile& scene) {
+  Json all = Json::array();
+  for (const LampSettings& lamp : scene.lamps) all.push_back(jsonOf(lampOf(lamp), lamp.color, lamp.strength));
+  for (const LightningSettings& one : scene.lightning) {
+    Json json = jsonOf(Lamp{one.place, {}, one.range, one.radius}, one.color, one.strength);
+    json["every"] = one.at ? 0 : shortest(one.every_seconds);
+    json["decay"] = shortest(one.decay_seconds);
+    json["dark"] = shortest(kDarkFlash);
+    for (const Flash& flash : flashesOf(one))
+      json["flashes"].push_back({{"place", jsonOf(flash.place)}, {"strokes", jsonOf(flash.strokes)}});
+    all.push_back(std::move(json));
+  }
+  return all;
 }
 
 // --- Camera and meshes ---
@@ -532,6 +569,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["fog_scatter"] = {shortest(scatter.strength), shortest(scatter.exponent)};
   // Fog of the horizon's colour follows the sun.
   if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
+  if (!file.lamps.empty() || !file.lightning.empty()) scene["lamps"] = lampsJson(file);
   scene["mesh"] = meshJson(meshes, isLayered(file) ? &file : nullptr);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};

@@ -35,6 +35,7 @@ std::vector<std::string> movingThings(const SceneFile& scene, bool has_mesh_clou
   add(scene.camera_path, "the camera on its path");
   add(scene.day && scene.day->seconds > 0, "sun and moon");
   const auto& aurora = scene.light.sky.aurora;
+  add(!scene.lightning.empty(), "lightning");
   add(aurora && aurora->speed > 0 && aurora->strength > 0, "the aurora");
   return moving;
 }

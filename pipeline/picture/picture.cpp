@@ -303,9 +303,9 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
     for (int channel = 0; const char* name : {"sun", "sky", "opacity", "depth"})
       add(*view.channels, name, channelPicture(steps.front().channels, channel++));
   if (view.steps)
-    for (int number = 1; const auto& [name, channels] : steps)
+    for (int number = 1; const auto& [name, channels, lamps] : steps)
       add(*view.steps, fmt::format("{}_{}", number++, name),
-          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, compositeOf(scene)), view.exposure)));
+          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, compositeOf(scene), lamps), view.exposure)));
   return files;
 }
 

@@ -61,6 +61,7 @@ std::string sizeText(const Camera& camera) { return fmt::format("{}x{} pixels", 
 
 MemoryNeed pixelsNeed(const SceneFile& scene, std::span<const Instance> instances, const Camera& camera) {
   const bool all_steps = scene.view.channels || scene.view.steps;
+  const double lights = scene.light.lamps.empty() ? 1 : 3;  // that of lamps goes through the chain as two more images
   const double steps = instances.empty() || scene.view.plain ? 0 : all_steps ? kAllSteps : kStepsKept;
   const double blurred = scene.grade.motion_blur ? kBytesPerBlurredPixel : 0;
   double pictures = 1;
@@ -68,7 +69,7 @@ MemoryNeed pixelsNeed(const SceneFile& scene, std::span<const Instance> instance
     pictures += 2 * double(scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size() + scene.dust.size() + 1);
   return {(pictures > 1 ? "a sheet of pictures of " : "a picture of ") + sizeText(camera),
           double(camera.width) * camera.height *
-              (pictures * (scene.view.plain ? kBytesPerPlainPixel : kBytesPerPixel) + blurred + steps * kBytesPerStep),
+              (pictures * (scene.view.plain ? kBytesPerPlainPixel : kBytesPerPixel) + blurred + lights * steps * kBytesPerStep),
           "use a smaller --size, or width and height of [picture]"};
 }
 

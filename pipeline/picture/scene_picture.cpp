@@ -71,7 +71,8 @@ class Painter {
     if (instances_.empty()) return std::nullopt;
     return timed("mesh clouds", [&] {
       if (parts_.steps.empty()) drawSteps();
-      return meshCloudLayer(*last_, *drawn_, rows, depthRangeOf(scene_.post, instances_), light_.sky, compositeOf(scene_));
+      return meshCloudLayer(*last_, *drawn_, rows, depthRangeOf(scene_.post, instances_), light_.sky, compositeOf(scene_),
+                            parts_.steps.back().lamps);
     });
   }
 

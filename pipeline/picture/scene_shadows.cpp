@@ -71,21 +71,26 @@ std::vector<size_t> castersOf(const SceneFile& scene, std::span<const Instance> 
 
 }  // namespace
 
-std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warnings) {
+ShadowCaster shadowCasterOf(const BakedMesh& mesh, int voxels, uint64_t memory_limit) {
   Cloud cloud;
   cloud.surface = mesh.surface;
   cloud.closed = findDefects(cloud.surface).unmatched_edges == 0;
   FieldSettings settings;
-  settings.bake_voxels = kCasterVoxels;
+  settings.bake_voxels = voxels;
+  settings.memory_limit = memory_limit;
+  Warnings told_by_the_bake;
+  const CoverageField field = buildField(cloud, settings, Method::kSweep, told_by_the_bake).coverage.value();
+  ShadowCaster caster;
+  caster.cells = field.cells;
+  caster.cell_size = float(field.frame.voxel_size);
+  caster.origin = field.frame.toWorld({float(field.first[0]), float(field.first[1]), float(field.first[2])});
+  for (const float fraction : field.fractions) caster.fractions.push_back(uint8_t(std::lround(255 * fraction)));
+  return caster;
+}
+
+std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warnings) {
   try {
-    Warnings told_by_the_bake;
-    const CoverageField field = buildField(cloud, settings, Method::kSweep, told_by_the_bake).coverage.value();
-    ShadowCaster caster;
-    caster.cells = field.cells;
-    caster.cell_size = float(field.frame.voxel_size);
-    caster.origin = field.frame.toWorld({float(field.first[0]), float(field.first[1]), float(field.first[2])});
-    for (const float fraction : field.fractions) caster.fractions.push_back(uint8_t(std::lround(255 * fraction)));
-    return caster;
+    return shadowCasterOf(mesh, kCasterVoxels);
   } catch (const MemoryError&) {
     throw;
   } catch (const InputError& error) {

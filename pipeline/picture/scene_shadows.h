@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "core/warnings.h"
 #include "pipeline/scene/scene_file.h"
 #include "preview/layer.h"
@@ -18,6 +19,8 @@ namespace cloudbake {
 /// that encloses nothing casts no shadow, and is counted.
 inline constexpr int kCasterVoxels = 64;
 std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warnings);
+/// The same with as many voxels as given. Throws InputError, without a file, if the mesh encloses nothing.
+ShadowCaster shadowCasterOf(const BakedMesh& mesh, int voxels, uint64_t memory_limit = kMemoryLimit);
 
 /// Whether there are two things of which one could shadow the other, and the scene wants them to.
 bool drawsShadows(const SceneFile& scene);

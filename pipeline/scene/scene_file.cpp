@@ -68,6 +68,39 @@ void readLight(TomlReader table, LightSettings& light, ShadowSettings& shadows, 
   table.finish();
 }
 
+LampSettings readLamp(TomlReader table) {
+  LampSettings lamp;
+  readKeys(table, lampKeys(), lamp);
+  table.finish();
+  if (!lamp.look_at && (table.has("inner_angle") || table.has("outer_angle")))
+    table.refuseAt(table.has("inner_angle") ? "inner_angle" : "outer_angle",
+                   "[[lamp]] has an angle but does not say where it shines to: give look_at = [x, y, z], or leave the angle out");
+  if (lamp.look_at && !(lamp.inner_degrees < lamp.outer_degrees))
+    table.refuseAt(table.has("outer_angle") ? "outer_angle" : "inner_angle", "[[lamp]]: inner_angle is not below outer_angle");
+  if (lamp.look_at && *lamp.look_at == lamp.place)
+    table.refuseAt("look_at", "[[lamp]]: look_at and place are the same point: give another look_at");
+  return lamp;
+}
+
+LightningSettings readLightning(TomlReader table) {
+  LightningSettings lightning;
+  readKeys(table, lightningKeys(), lightning);
+  table.finish();
+  if (lightning.at && table.has("every"))
+    table.refuseAt("every", "[[lightning]] has a single flash (at) and many (every): give one of the two");
+  return lightning;
+}
+
+// Lamps and lightning, and those of them that shine at the time of the view.
+void readLamps(TomlReader& table, SceneFile& scene) {
+  for (TomlReader& lamp : table.tables("lamp")) scene.lamps.push_back(readLamp(std::move(lamp)));
+  for (TomlReader& lightning : table.tables("lightning")) scene.lightning.push_back(readLightning(std::move(lightning)));
+  if (scene.lamps.size() + scene.lightning.size() > kMostLamps)
+    table.refuseAt(scene.lamps.empty() ? "lightning" : "lamp",
+                   fmt::format("there are more than {} [[lamp]] and [[lightning]]: leave some out", kMostLamps));
+  scene.light.lamps = lampsAt(scene.lamps, scene.lightning, scene.view.time_seconds);
+}
+
 // What lobes that are baked for the scene are fitted to, with --fit-to volume.
 void readVolume(TomlReader table, VolumeChoices& volume) {
   OctaveSettings octaves;
@@ -322,6 +355,7 @@ void readScenery(TomlReader& table, const std::filesystem::path& folder, const F
   scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
   readSky(table.table("sky"), folder, read_file, scene);
   readLight(table.table("light"), scene.light, scene.shadows, scene.post.composite.phase);
+  readLamps(table, scene);
   readVolume(table.table("volume"), scene.volume);
   readChain(table.table("chain"), scene.post);
   readFog(table.table("fog"), scene);

@@ -20,6 +20,7 @@
 #include "preview/backdrop/terrain.h"
 #include "preview/camera.h"
 #include "preview/grade.h"
+#include "preview/lamp.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/mesh_clouds.h"
 #include "preview/mesh_clouds/scatter.h"
@@ -87,8 +88,10 @@ struct SceneFile {
   std::optional<Day> day;                 ///< of scenes in which an hour places sun, moon and stars
   std::filesystem::path moon_picture;     ///< resolved against the scene's folder; it is not read with the scene
   SkyStrip sky_strip;                     ///< of a sky whose ramp is a picture
+  std::vector<LampSettings> lamps;
+  std::vector<LightningSettings> lightning;
   ShadowSettings shadows;
-  LightSettings light;   ///< for the view's sun, with the colours that the file sets
+  LightSettings light;   ///< for the view's sun, with the colours that the file sets, and the lamps that shine at its time
   VolumeChoices volume;  ///< of the lobes that are baked for the scene
   PostSettings post;
   std::optional<TerrainSettings> terrain;

@@ -49,6 +49,8 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   visit("light", lightKeys(), scene.light);
   visit("light", shadowKeys(), scene.shadows);
   visit("light", phaseKeys(), post.composite.phase);
+  if (!scene.lamps.empty()) visit("lamp", lampKeys(), scene.lamps.front());
+  if (!scene.lightning.empty()) visit("lightning", lightningKeys(), scene.lightning.front());
   visit("fog", chainFogKeys(), post.composite);
   visit("fog", fogKeys(), scene.fog);
   visit("fog", scatterKeys(), post.composite.scatter);
@@ -148,7 +150,7 @@ SceneFile wholeScene(bool as_published) {
       "[[cloud]]\npreset = 'hero'\n[[cloud]]\npreset = 'hero'\n[cloud.scatter]\nlow = [0, 0, 0]\nhigh = [1, 1, 1]\n[[slab]]\n" + published +
       "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published + "[terrain]\n" + published +
       "[[dust]]\nlattice = 'cloud.json'\n[camera]\npath = 'terrain'\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n"
-      "[volume]\noctaves = 0\n";
+      "[volume]\noctaves = 0\n[[lamp]]\n[[lightning]]\n";
   return readSceneFile("scene", text, [](const PictureSettings& view) { return view; });
 }
 
@@ -169,6 +171,8 @@ constexpr Table kTables[]{
     {"sky.stars", "[sky.stars]"},
     {"sky.aurora", "[sky.aurora]"},
     {"light", "[light]", "maajor/Mesh-Cloud-Rendering (half-Lambert)"},
+    {"lamp", "[[lamp]]", "glTF's extension KHR_lights_punctual (falloff and angles)"},
+    {"lightning", "[[lightning]]", "counts of real flashes (`preview/lamp.cpp`)"},
     {"fog", "[fog]"},
     {"chain", "[chain]", "\"Volumetric Clouds and Mega-Particles\""},
     {"cloud", "[[cloud]]"},

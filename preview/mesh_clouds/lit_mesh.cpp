@@ -15,6 +15,7 @@
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "core/lobe_packing.h"
+#include "core/parallel.h"
 #include "core/vertex_normals.h"
 #include "preview/camera.h"
 #include "preview/shading_math.h"
@@ -97,6 +98,19 @@ class VertexTransmittance {
   size_t coefficients_;  // per vertex; 0: lobes
 };
 
+// The light of all lamps at each vertex, by its lobe.
+std::vector<Vec3> lightOfLamps(const Instance& instance, std::span<const Vec3> normals, const LightSettings& light) {
+  const LobeShape shape = worldShape(instance);
+  const float extinction = worldExtinction(instance, light);
+  std::vector<Vec3> sums(instance.mesh->lobes.size());
+  parallelFor(sums.size(), [&](size_t i) {
+    const Lobe lobe = transformedLobe(instance.mesh->lobes[i], instance.to_world);
+    const Vec3 place = transformPoint(instance.to_world, instance.mesh->surface.positions[i]);
+    for (const Lamp& lamp : light.lamps) sums[i] += lampLight(lamp, lobe, place, normals[i], light.half_lambert, shape, extinction);
+  });
+  return sums;
+}
+
 // Places one instance in the frame of `lit`, lights it, and appends it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
   const BakedMesh& mesh = *instance.mesh;
@@ -105,6 +119,12 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
 
   const std::vector<Triangle> triangles = worldTriangles(instance);
   const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
+  for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
+  if (light.shown != ShownLight::kSunAndSky) {
+    for (const Vec3& lamps : lightOfLamps(instance, normals, light))
+      lit.shades.push_back(light.shown == ShownLight::kLampsRedGreen ? Shade{lamps.x, lamps.y} : Shade{lamps.z, 0});
+    return;
+  }
   const VertexTransmittance transmittance(instance, light);
   const Vec3 to_light = keyLight(light.sky).direction;
   const float gain = mesh.info.volume ? light.volume_gain : 1;
@@ -114,7 +134,6 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
     lit.shades.push_back({sun * surfaceFactor(normals[i], to_light, light.half_lambert) * share,
                           transmittance.towards(i, {0, 1, 0}) * surfaceFactor(normals[i], {0, 1, 0}, light.half_lambert_sky)});
   }
-  for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
 }
 
 // Where the line of a ray meets the plane of a triangle (Möller and Trumbore 1997), in double. None if they are parallel.

@@ -10,9 +10,13 @@
 #include "core/ray_scene.h"
 #include "core/types.h"
 #include "preview/backdrop/sky.h"
+#include "preview/lamp.h"
 #include "preview/mesh_clouds/cloud_shadow.h"
 
 namespace cloudbake {
+
+/// What the two fields of a vertex are: the light of sun and sky, or red and green, or blue and nothing of the light of lamps.
+enum class ShownLight : uint8_t { kSunAndSky, kLampsRedGreen, kLampsBlue };
 
 /// How clouds are lit and drawn. Colours are linear.
 struct LightSettings {
@@ -25,6 +29,8 @@ struct LightSettings {
   float view_extinction = 4;   ///< opacity along the view, in units of σ, > 0: edges soften where the cloud is thin. 0 = opaque surface
   bool first_surface = false;  ///< the first surface shows its light; else light changes evenly from the front of the cloud to its back
   int samples_per_side = 4;    ///< n·n rays per pixel, ≥ 1
+  std::vector<Lamp> lamps;     ///< beside sun and sky
+  ShownLight shown = ShownLight::kSunAndSky;
   RaysToCome rays = RaysToCome::kMany;  ///< how the mesh is prepared; the picture is the same
 };
 /// Its keys in a scene file.

@@ -104,8 +104,10 @@ DepthRange depthRangeOf(const PostSettings& settings, std::span<const Instance> 
   return {settings.near_distance, far};
 }
 
-std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
-                                      const PostSettings& settings, StepsKept kept) {
+namespace {
+
+std::vector<ChainStep> chainOf(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
+                               const PostSettings& settings, StepsKept kept) {
   const DepthRange range = depthRangeOf(settings, instances);
   Chain chain = settings.published ? publishedChain(instances, camera, light, *settings.published, range, kept)
                                    : paintedChain(instances, camera, light, settings.painted, range, kept);
@@ -117,6 +119,21 @@ std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const
   return std::move(chain).steps();
 }
 
+}  // namespace
+
+std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
+                                      const PostSettings& settings, StepsKept kept) {
+  std::vector<ChainStep> steps = chainOf(instances, camera, light, settings, kept);
+  if (light.lamps.empty()) return steps;
+  LightSettings of_lamps = light;
+  for (const ShownLight shown : {ShownLight::kLampsRedGreen, ShownLight::kLampsBlue}) {
+    of_lamps.shown = shown;
+    std::vector<ChainStep> same = chainOf(instances, camera, of_lamps, settings, kept);
+    for (size_t i = 0; i < steps.size(); ++i) steps[i].lamps.push_back(std::move(same[i].channels));
+  }
+  return steps;
+}
+
 Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& settings) {
   return renderSky(camera, sky, settings.sky_samples_per_side, settings.published ? SkySampling::kEverywhere : SkySampling::kAtEdges);
 }
@@ -124,12 +141,13 @@ Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& 
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                        const PostSettings& settings) {
   const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, light, settings, StepsKept::kEnds);
-  return composite(steps.back().channels, drawSky(camera, light.sky, settings), camera, light.sky, settings.composite);
+  return composite(steps.back().channels, drawSky(camera, light.sky, settings), camera, light.sky, settings.composite, steps.back().lamps);
 }
 
 Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& camera, const DepthRange& range, const SkySettings& sky,
-                     const CompositeSettings& settings) {
+                     const CompositeSettings& settings, const LampChannels& lamps) {
   Image4 resampled, resampled_drawn;
+  const LampPixels lamp_pixels(lamps, camera.width, camera.height, settings.mean);
   const Image4& full = atSize(channels, camera.width, camera.height, settings.mean, resampled);
   const Image4& own = atSize(drawn, camera.width, camera.height, settings.mean, resampled_drawn);
   const Vec3 forward = cameraAxes(camera).forward;
@@ -143,7 +161,8 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
       if (!(pixel[2] > 0)) continue;
       const Vec3 view = rays.at(float(x) + 0.5F, float(row) + 0.5F).direction;
       const float depth = here[2] > 0 ? here[3] : pixel[3];
-      layer.at(x, y) = {foggedCloud(pixel, view, light, settings), pixel[2], lerp(range.near, range.far, depth) / dot(view, forward)};
+      layer.at(x, y) = {foggedCloud(pixel, view, light, settings, lamp_pixels.at(x, row)), pixel[2],
+                        lerp(range.near, range.far, depth) / dot(view, forward)};
     }
   });
   return layer;

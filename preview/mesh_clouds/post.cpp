@@ -262,16 +262,23 @@ Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const CloudLight& light, cons
   return cloudColor({channels[0], channels[1]}, colors);
 }
 
-Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings) {
+LampPixels::LampPixels(const LampChannels& lamps, int width, int height, ChannelMean mean) {
+  if (lamps.empty()) return;
+  red_green_ = &atSize(lamps[0], width, height, mean, resampled_[0]);
+  blue_ = &atSize(lamps[1], width, height, mean, resampled_[1]);
+}
+
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings, Vec3 lamps) {
   const float fog = 1 - std::exp(-settings.fog_density * channels[3]);
   const Vec3 fog_color =
       settings.fog_color.value_or(light.colors.horizon) + scatteredLight(view, light.to_light, light.colors.sun_color, settings.scatter);
-  return lerp(lightOfCloud(channels, view, light, settings.phase), fog_color, fog);
+  return lerp(lightOfCloud(channels, view, light, settings.phase) + lamps, fog_color, fog);
 }
 
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
-                const CompositeSettings& settings) {
+                const CompositeSettings& settings, const LampChannels& lamps) {
   Image4 resampled;
+  const LampPixels lamp_pixels(lamps, background.width, background.height, settings.mean);
   const Image4& full = atSize(channels, background.width, background.height, settings.mean, resampled);
   Image result = background;
   const CloudLight light = cloudLight(sky);
@@ -281,7 +288,7 @@ Image composite(const Image4& channels, const Image& background, const Camera& c
       const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;
       const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
-      result.at(x, y) = foggedCloud(pixel, view, light, settings) * pixel[2] + background.at(x, y) * (1 - pixel[2]);
+      result.at(x, y) = foggedCloud(pixel, view, light, settings, lamp_pixels.at(x, y)) * pixel[2] + background.at(x, y) * (1 - pixel[2]);
     }
   });
   return result;

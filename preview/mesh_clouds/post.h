@@ -122,6 +122,10 @@ CloudLight cloudLight(const SkySettings& sky);
 /// The colour of a cloud's channels seen along `view`: cloudColor with the term of the key light times phaseFactor.
 Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const PhaseSettings& settings);
 
+/// The light of lamps, which went through the same steps as the channels of sun and sky and has their opacity and depth: red and green, and
+/// blue, in R and G of two images. Empty without lamps.
+using LampChannels = std::vector<Image4>;
+
 struct CompositeSettings {
   float fog_density = 0.2F;  ///< of the fog's 1 − exp(−density·A), ≥ 0; 0 = no fog
   ChannelMean mean = ChannelMean::kCovered;
@@ -132,12 +136,28 @@ struct CompositeSettings {
 /// Its keys in a scene file.
 const Keys<CompositeSettings>& chainFogKeys();
 
-/// lightOfCloud, faded by the fog of its depth.
-Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings);
+/// lightOfCloud and the light of lamps, faded by the fog of its depth.
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings, Vec3 lamps = {});
+
+/// Reads the light of lamps at the pixels of a picture.
+class LampPixels {
+ public:
+  /// Both must outlive this.
+  LampPixels(const LampChannels& lamps, int width, int height, ChannelMean mean);
+  Vec3 at(int x, int y) const {
+    if (!red_green_) return {};
+    const Rgba& p = red_green_->at(x, y);
+    return {p[0], p[1], blue_->at(x, y)[0]};
+  }
+
+ private:
+  Image4 resampled_[2];
+  const Image4 *red_green_ = nullptr, *blue_ = nullptr;
+};
 
 /// foggedCloud over the background by B, as composeLayers puts it there. The channels may be smaller than the
 /// background, which has the camera's size: they are read bilinearly at its pixels. Where B is 0, the background stays exactly the same.
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
-                const CompositeSettings& settings = {});
+                const CompositeSettings& settings = {}, const LampChannels& lamps = {});
 
 }  // namespace cloudbake

@@ -7,20 +7,18 @@
 
 namespace cloudbake {
 
-ShadowFrame shadowFrame(const Box& box, Vec3 to_sun) {
+ShadowFrame shadowFrame(std::span<const Vec3> points, Vec3 to_sun) {
   ShadowFrame frame;
   frame.to_sun = to_sun;
   frame.right = normalized(cross({0, 1, 0}, to_sun)).value_or(Vec3{1, 0, 0});
   frame.up = *normalized(cross(to_sun, frame.right));
+  Box box;  // in the axes of the picture
+  for (const Vec3& p : points) box.add({dot(p, frame.right), dot(p, frame.up), dot(p, to_sun)});
   if (box.empty()) return frame;
-  frame.origin = box.center();
-  const auto extentAlong = [&](Vec3 direction) {
-    float most = 0;
-    for (int i = 0; i < 8; ++i) most = std::max(most, dot(box.corner(i) - frame.origin, direction));
-    return most;
-  };
-  frame.width = 2 * extentAlong(frame.right), frame.height = 2 * extentAlong(frame.up);
-  frame.top = extentAlong(to_sun), frame.bottom = -frame.top;
+  const Vec3 center = box.center(), size = box.size();
+  frame.origin = frame.right * center.x + frame.up * center.y + to_sun * center.z;
+  frame.width = size.x, frame.height = size.y;
+  frame.top = size.z / 2, frame.bottom = -frame.top;
   return frame;
 }
 

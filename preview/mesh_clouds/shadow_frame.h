@@ -1,6 +1,8 @@
 // Where the picture of a cloud's shadow lies in the world. shaders/functions/cast_shadow.glsl is the same in GLSL.
 #pragma once
 
+#include <span>
+
 #include "core/types.h"
 #include "core/vec3.h"
 
@@ -14,9 +16,8 @@ struct ShadowFrame {
   float top = 0, bottom = 0;  ///< where the cloud ends towards the sun and away from it: lengths from `origin` along `to_sun`
 };
 
-/// The frame of a cloud in a box, seen from the sun. `up` is as far upwards as it can be; of a sun at the zenith, `right` is +X. The
-/// picture encloses the box.
-ShadowFrame shadowFrame(const Box& box, Vec3 to_sun);
+/// The frame that encloses these points, seen from the sun. `up` is as far upwards as it can be; of a sun at the zenith, `right` is +X.
+ShadowFrame shadowFrame(std::span<const Vec3> points, Vec3 to_sun);
 
 /// Where a place of the world is in the picture, 0 … 1 from the lower left.
 Vec2 shadowPlace(Vec3 place, const ShadowFrame& frame);

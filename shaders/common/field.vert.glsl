@@ -16,6 +16,7 @@ uniform vec2 shape;  // k and b
 uniform float extinction, half_lambert, half_lambert_sky;
 uniform mat3 to_own;           // from the mesh's place before it is scattered to the axes of the harmonics
 uniform float own_extinction;  // for which they were made, per unit of their mesh
+uniform int shown;             // the light of sun and sky, or of lamps: red and green, or blue
 uniform bool of_error;         // no error is known
 uniform vec2 gains;            // of the sun's term, left and right of the divider
 uniform ivec2 lights;          // what the light left and right of the divider follows: lobe, or harmonics (2)
@@ -45,6 +46,14 @@ void main() {
 
   vec3 towards = vec3(c * l.x - s * l.z, l.y, c * l.z + s * l.x);
   float sigma = extinction * cloud_light.w;
+  if (shown > 0) {
+    vec3 o = mesh_lobe.xyz, n = mesh_normal;
+    vec4 lobe = vec4(c * o.x + s * o.z, o.y, c * o.z - s * o.x, mesh_lobe.w * cloud_place.w);
+    vec3 normal = vec3(c * n.x + s * n.z, n.y, c * n.z - s * n.x);
+    vec3 lit = lampsLight(lobe, from_eye + eye, normal, half_lambert, vec2(shape.x, shape.y * cloud_place.w), sigma / cloud_place.w);
+    shade = vec4(shown == 1 ? lit.xy : vec2(lit.z, 0.0), 0.0, 0.0);
+    return;
+  }
   shade.xy = of_error ? vec2(0.5, 0.0) : shadeBy(lights.x, gains.x, towards, sigma);
   shade.zw = lights.x == lights.y || of_error ? shade.xy : shadeBy(lights.y, gains.y, towards, sigma);
 }

@@ -7,12 +7,14 @@ in vec2 seen;      // light that an eye sees of the volume through the vertex: s
 in vec2 latticed;  // T towards sun and sky, by a lattice of harmonics
 in float sun_share;  // what comes of the sun's light past other clouds
 in vec4 harmonics_0, harmonics_1, harmonics_2, harmonics_3;
+in vec3 mesh_position;  // in the world
 
 uniform vec3 to_sun;
 uniform vec2 shape, compared_shape;  // k and b
 uniform float extinction, half_lambert, half_lambert_sky;
 uniform mat3 to_own;           // from the world to the axes of the harmonics
 uniform float own_extinction;  // for which they were made, per unit of their mesh
+uniform bool of_lamps;         // the light of lamps, instead of that of sun and sky
 uniform bool of_error;         // 1/2 + 1/2 · the error of the light of the sun, instead of the light
 uniform vec2 gains;            // of the sun's term, left and right of the divider
 uniform ivec2 lights;          // what the light left and right of the divider follows: LIGHTS of vertices.js
@@ -87,6 +89,10 @@ vec2 shadeBy(int light, int order, float gain) {
 }
 
 void main() {
+  if (of_lamps) {
+    shade = vec4(lampsLight(lobe, mesh_position, normal, half_lambert, shape, extinction), 0.0);
+    return;
+  }
   shade.xy = shadeBy(lights.x, orders.x, gains.x);
   shade.zw = lights.x == lights.y && orders.x == orders.y ? shade.xy : shadeBy(lights.y, orders.y, gains.y);
 }

@@ -13,7 +13,7 @@ const CLOUDS = "[[cloud]]\nfile = 'a.glb'\n[[cloud]]\nfile = 'a.glb'\nposition =
 const SCENES = {
   day: `[picture]\ntime = 31.7\n[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\nelevation = 34\n[sky]\nhorizon_color = [1, 0, 0]\n
 [terrain]\n[fog]\nper_unit = 0.001\ncolor = [1, 0, 0]\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n
-[[slab]]\n[[marched]]\n[[marched]]\nfield = 'density'\n[[dust]]\nlattice = 'a.json'\n${CLOUDS}`,
+[[lamp]]\n[[lightning]]\nat = 31.69\n[[slab]]\n[[marched]]\n[[marched]]\nfield = 'density'\n[[dust]]\nlattice = 'a.json'\n${CLOUDS}`,
   night: `[picture]\ntime = 30\n[camera]\nposition = [0, 1, 20]\ntarget = [0, 5, 0]\n[sun]\nelevation = 60\nhour = 20\nday_seconds = 2000\n
 [sky]\ndisc = 'smooth'\n[sky.moon]\nelevation = 25\n[sky.stars]\n[sky.aurora]\n[chain]\nas_published = true\n
 [terrain]\nown_sky = true\nscale = 0.03\n

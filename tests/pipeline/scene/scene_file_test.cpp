@@ -726,6 +726,40 @@ TEST(SceneNeedsFile, TheDistanceOfACameraByPlace) {
   EXPECT_EQ(needs("[camera]\nposition = [3, 4, 7]\ntarget = [0, 0, 7]\n").camera_distance, 5);
 }
 
+// --- Lamps ---
+
+TEST(SceneFile, Lamps) {
+  const SceneFile s = withCloud(
+      "[[lamp]]\nplace = [1, 2, 3]\ncolor = [1, 0.5, 0.25]\nstrength = 4\nrange = 9\n[[lamp]]\nlook_at = [0, -2, 0]\ninner_angle = 0\n"
+      "outer_angle = 60\n[[lightning]]\nplace = [5, 6, 7]\nat = 100\n[[lightning]]\nat = 0\nstrength = 2\ncolor = [1, 1, 1]\n");
+  ASSERT_EQ(s.lamps.size(), 2U);
+  ASSERT_EQ(s.lightning.size(), 2U);
+  ASSERT_EQ(s.light.lamps.size(), 3U) << "the flash of 100 s is not there at 0 s";
+  const Lamp &point = s.light.lamps[0], &spot = s.light.lamps[1], &flash = s.light.lamps[2];
+  EXPECT_EQ(point.place, (Vec3{1, 2, 3}));
+  EXPECT_EQ(point.color, (Vec3{4, 2, 1}));
+  EXPECT_EQ(point.range, 9);
+  EXPECT_LE(point.cone.y, -1);
+  EXPECT_EQ(spot.axis, (Vec3{0, -1, 0}));
+  EXPECT_FLOAT_EQ(spot.cone.x, 1);
+  EXPECT_NEAR(spot.cone.y, 0.5F, 1e-6F);
+  EXPECT_EQ(flash.color, (Vec3{2, 2, 2}));
+  EXPECT_TRUE(withCloud("").light.lamps.empty());
+  EXPECT_EQ(withCloud("[picture]\ntime = 100.01\n[[lightning]]\nat = 100\n").light.lamps.size(), 1U);
+}
+
+TEST(SceneFile, RefusesLampsThatCannotBe) {
+  expectRefusal("[[lamp]]\nouter_angle = 20\n", "does not say where it shines to");
+  expectRefusal("[[lamp]]\nlook_at = [1, 0, 0]\ninner_angle = 40\n", "inner_angle is not below outer_angle");
+  expectRefusal("[[lamp]]\nlook_at = [0, 0, 0]\n", "the same point");
+  expectRefusal("[[lamp]]\nbrightness = 2\n", "brightness");
+  expectRefusal("[[lamp]]\nradius = 0\n", "radius");
+  expectRefusal("[[lightning]]\nat = 2\nevery = 8\n", "a single flash (at) and many (every)");
+  std::string many;
+  for (int i = 0; i < 17; ++i) many += "[[lamp]]\n";
+  expectRefusal(many, "there are more than 16 [[lamp]] and [[lightning]]");
+}
+
 // Clouds are read but not opened, and a key that no scene has is refused here too.
 TEST(SceneNeedsFile, TheRestOfTheScene) {
   EXPECT_NO_THROW(needs("[terrain]\n[[cloud]]\nfile = 'there/is/none.glb'\n"));

@@ -26,6 +26,8 @@ std::string wholeText(const std::string& table, const std::string& lines, const 
       {"sky.stars", "[sky.stars]\n"},
       {"sky.aurora", "[sky.aurora]\n"},
       {"light", "[light]\n"},
+      {"lamp", "[[lamp]]\nlook_at = [0, -1, 0]\n"},
+      {"lightning", "[[lightning]]\n"},
       {"fog", "[fog]\n"},
       {"chain", "[chain]\n" + published},
       {"cloud", "[[cloud]]\npreset = 'hero'\n"},
@@ -162,7 +164,9 @@ TEST(SceneKeys, EachFieldHasOne) {
   expectKeys(fogKeys());
   expectKeys(shadowKeys());
   expectKeys(phaseKeys());
-  expectKeys(lightKeys(), {"sky", "view_extinction", "first_surface", "samples_per_side", "rays"});
+  expectKeys(lampKeys());
+  expectKeys(lightningKeys());
+  expectKeys(lightKeys(), {"sky", "view_extinction", "first_surface", "samples_per_side", "lamps", "shown", "rays"});
   expectKeys(depthKeys(), {"published", "painted", "distort", "composite", "sky_samples_per_side"});
   expectKeys(distortKeys(), {"time_seconds", "mean"});
   expectKeys(chainFogKeys(), {"mean", "phase", "fog_color", "scatter"});

@@ -52,6 +52,47 @@ TEST(MeshClouds, RunsThePublishedStepsInOrder) {
   EXPECT_EQ(picture.height, 90);
 }
 
+// The light of lamps goes through the steps like that of the sun: where a lamp gives each vertex the shares that the sun gives it, the two
+// are the same channel.
+TEST(MeshClouds, LampsGoThroughTheSameSteps) {
+  const BakedMesh ball = bakedBall(1, {}, 4);
+  const Instance instances[] = {{&ball, {}}};
+  for (PostSettings settings : {PostSettings{}, publishedPost()}) {
+    settings.distort.time_seconds = 3;
+    LightSettings light = someLight();
+    const std::vector<ChainStep> dark = drawMeshClouds(instances, kCamera, light, settings);
+    constexpr float kFar = 1e5F;  // as far as the sun, as bright at the cloud
+    light.lamps = {{keyLight(light.sky).direction * kFar, Vec3{0.5F, 1, 2} * (kFar * kFar)}};
+    const std::vector<ChainStep> lit = drawMeshClouds(instances, kCamera, light, settings);
+    ASSERT_EQ(lit.size(), dark.size());
+    for (size_t i = 0; i < lit.size(); ++i) {
+      EXPECT_EQ(lit[i].channels.pixels, dark[i].channels.pixels);
+      EXPECT_TRUE(dark[i].lamps.empty());
+      ASSERT_EQ(lit[i].lamps.size(), 2U);
+      for (size_t p = 0; p < lit[i].channels.pixels.size(); ++p) {
+        const Rgba &sun = lit[i].channels.pixels[p], &first = lit[i].lamps[0].pixels[p], &second = lit[i].lamps[1].pixels[p];
+        ASSERT_NEAR(first[0], 0.5F * sun[0], 2e-3F);
+        ASSERT_NEAR(first[1], sun[0], 4e-3F);
+        ASSERT_NEAR(second[0], 2 * sun[0], 8e-3F);
+        ASSERT_EQ(first[2], sun[2]);
+        ASSERT_EQ(second[3], sun[3]);
+      }
+    }
+    // The composite adds it to the cloud, before the fog.
+    settings.composite.fog_density = 0;
+    const Image without = renderMeshClouds(instances, kCamera, someLight(), settings),
+                with = renderMeshClouds(instances, kCamera, light, settings);
+    const auto& last = lit.back();
+    if (last.channels.width == with.width)
+      for (size_t p = 0; p < with.pixels.size(); ++p) {
+        const float opacity = last.channels.pixels[p][2];
+        const Vec3 more = with.pixels[p] - without.pixels[p];
+        ASSERT_NEAR(more.y, last.lamps[0].pixels[p][1] * opacity, 1e-4F);
+        ASSERT_NEAR(more.z, last.lamps[1].pixels[p][0] * opacity, 1e-4F);
+      }
+  }
+}
+
 TEST(MeshClouds, RunsThePaintedStepsInOrder) {
   const BakedMesh ball = bakedBall(1, {}, 4), large = bakedBall(3, {}, 4);
   const Instance instances[] = {{&ball, {}}, {&large, {}}};

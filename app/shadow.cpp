@@ -1,0 +1,38 @@
+// cloudbake shadow ASSET.glb -o shadow.png: the shadow that an asset casts under a sun, as a picture for decals and light cookies.
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/tell.h"
+#include "io/file/write_file.h"
+#include "io/gltf/asset/decode.h"
+#include "pipeline/picture/picture.h"
+#include "pipeline/picture/shadow_picture.h"
+#include "preview/camera.h"
+
+namespace cloudbake {
+
+ExitCode runShadow(const CommandLine& line) {
+  const Settings settings = settingsOf(line, line.given);
+  BakeReport report;
+  report.command = "shadow";
+  report.input = line.input.string();
+  Stopwatch watch;
+  const BakedMesh mesh = decodeGlb(line.input, readFileBytes(line.input), report.warnings, settings.source.read);
+  report.info = mesh.info;
+  enforceStrict(settings.run.strict, report);
+  watch.lap(report.seconds, "read");
+  const Vec3 to_sun = directionFromAngles(settings.picture.sun_azimuth_degrees, settings.picture.sun_elevation_degrees);
+  const ShadowPicture picture = namingFile(report.input, [&] {
+    return drawShadow(mesh, to_sun, settings.shadow.size, settings.shadow.extinction, settings.picture.memory_limit);
+  });
+  watch.lap(report.seconds, "draw");
+  const ShadowFiles files = encodeShadow(picture);
+  writeFileAtomically(shadowFrameFile(settings.output.file), files.frame);
+  writeFileAtomically(settings.output.file, files.png);
+  report.output = settings.output.file.string();
+  watch.lap(report.seconds, "write");
+  tellReport(settings.run, report, {{"frame", Json::parse(files.frame)}}, "wrote       " + shadowFrameFile(report.output).string() + "\n");
+  return ExitCode::kDone;
+}
+
+}  // namespace cloudbake
