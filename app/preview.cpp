@@ -43,6 +43,7 @@ ExitCode runFolder(const CommandLine& line, const Settings& settings, BakeReport
   const FolderSheet drawn = drawFolder(files, settings, line.given, report, watch);
   enforceStrict(settings.run.strict, report);
   writeFileAtomically(settings.output.file, encodePng(drawn.sheet));
+  report.input = line.input.string();
   report.output = settings.output.file.string();
   report.vertices = report.triangles = 0;
   report.info = {};

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "app/commands.h"
 #include "app/tell.h"
@@ -62,10 +64,19 @@ void addFolder(const std::filesystem::path& folder, const Settings& settings, st
   if (live.scenes.size() == before) throw InputError(folder.string(), fmt::format("none of its {} files can be shown", files.files.size()));
 }
 
+// Scenes of one name are told apart by the paths of their files.
+void separateScenes(const std::vector<std::string>& paths, std::vector<LiveScene>& scenes) {
+  std::map<std::string, size_t> named;
+  for (const LiveScene& one : scenes) ++named[one.scene["name"].get<std::string>()];
+  for (size_t i = 0; i < scenes.size(); ++i)
+    if (named.at(scenes[i].scene["name"].get<std::string>()) > 1) scenes[i].scene["name"] = paths[i];
+}
+
 }  // namespace
 
 LiveScenes readLiveScenes(const CommandLine& line, BakeReport& report) {
   LiveScenes live;
+  std::vector<std::string> paths;
   std::vector<std::filesystem::path> inputs = line.inputs;
   if (inputs.empty()) inputs.push_back(line.input);  // --watch, or nothing for --scene
   for (const std::filesystem::path& input : inputs) {
@@ -75,13 +86,17 @@ LiveScenes readLiveScenes(const CommandLine& line, BakeReport& report) {
     if (std::filesystem::is_directory(input)) {
       report.input += (report.input.empty() ? "" : ", ") + input.string();
       addFolder(input, settings, one.given, live, report);
+      for (size_t i = paths.size(); i < live.scenes.size(); ++i)
+        paths.push_back((input / live.scenes[i].scene["name"].get<std::string>()).generic_string());
       continue;
     }
     const std::filesystem::path file = settings.scene ? *settings.scene : input;
     report.input += (report.input.empty() ? "" : ", ") + file.string();
     const Scenery scenery = settings.serve.watch ? bakeScenery(settings, one.given, report) : readScenery(settings, one.given, report);
     live.scenes.push_back(namingFile(file.string(), [&] { return liveScene(scenery, file.stem().string()); }));
+    paths.push_back(file.generic_string());
   }
+  separateScenes(paths, live.scenes);
   return live;
 }
 

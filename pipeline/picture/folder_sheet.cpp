@@ -29,15 +29,21 @@ std::string kindOf(const fs::path& file) {
   return isBakedAsset(file, readFileBytes(file)) ? "baked asset" : "sculpt";
 }
 
+// The text of an error without the path of its file, which the title of the panel has.
+std::string causeOf(const FolderPanel& panel, const fs::path& file) {
+  const std::string path = file.string() + ": ";
+  return panel.error.starts_with(path) ? panel.error.substr(path.size()) : panel.error;
+}
+
 // A dark picture that has the cause as text.
-Image pictureOfFailure(const FolderPanel& panel, int width, int height) {
+Image pictureOfFailure(const FolderPanel& panel, const fs::path& file, int width, int height) {
   constexpr Vec3 kGround{0.22F, 0.12F, 0.11F}, kText{1, 0.86F, 0.8F};
   Image image{width, height, {}};
   image.pixels.assign(size_t(width) * size_t(height), kGround);
   const Lettering lettering{std::clamp(float(height) / 16, 11.0F, 20.0F), false};
   const int margin = int(lettering.size_px);
-  drawText(image, margin, margin, wrapText(fmt::format("exit code {}\n{}", panel.code, panel.error), width - 2 * margin, lettering),
-           lettering, kText);
+  drawText(image, margin, margin,
+           wrapText(fmt::format("exit code {}\n{}", panel.code, causeOf(panel, file)), width - 2 * margin, lettering), lettering, kText);
   return image;
 }
 
@@ -96,7 +102,7 @@ FolderSheet drawFolder(const FolderFiles& files, const Settings& settings, std::
       picture = stillPicture(scenery, seconds);
       watch.lap(report.seconds, "render");
     });
-    if (panel.code != 0) picture = pictureOfFailure(panel, view.width, view.height);
+    if (panel.code != 0) picture = pictureOfFailure(panel, file, view.width, view.height);
     panels.push_back(panelOf(panel, std::move(picture)));
     folder.panels.push_back(std::move(panel));
   }
