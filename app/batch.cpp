@@ -47,6 +47,7 @@ ExitCode summarize(const BatchReport& report, bool quiet) {
   for (const AssetState state : kAssetStates)
     if (const size_t count = assetsIn(report, state); count > 0)
       text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(stateName(state));
+  if (!quiet && !report.frames.empty()) say(stdout, "frame       " + report.frames + "\n");
   if (!quiet)
     fmt::print("batch       {}{}\nseconds     {:.2f}, {:.2f} of {} processors busy\nmemory      {:.0f} MiB at most\n", text,
                report.removed.empty() ? "" : fmt::format(", {} removed", report.removed.size()), report.seconds,

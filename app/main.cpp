@@ -43,14 +43,17 @@ const CommandSpec kCommands[] = {
      "sculpt.glb\n"
      "  cloudbake bake sculpt.stl --as-published -o published.glb\n  cloudbake bake smoke.vdb --grid density --iso 0.05 -o smoke.glb",
      "FILE", runBake, "file to write", ".glb"},
-    {kPreview, "preview", "ASSET.glb", "baked asset to draw", "light a baked asset with the lobe formula and draw it to a PNG",
+    {kPreview, "preview", "ASSET.glb|FOLDER", "baked asset to draw, or a folder for a sheet of all that is in it",
+     "light a baked asset with the lobe formula and draw it to a PNG",
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
-     "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
+     "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png\n  "
+     "cloudbake preview sculpts/ -o sheet.png",
      "FILE", runPreview, "file to write", ".png .apng"},
-    {kView, "view", "ASSET.glb", "baked assets or scenes (.toml) to show",
+    {kView, "view", "ASSET.glb|FOLDER", "baked assets, scenes (.toml) or folders to show",
      "make a page that shows baked assets live in a browser, or serve it",
      "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view a.glb b.glb --compare -o clouds.html\n  cloudbake view --scene "
      "scene.toml --sun 170,20 -o scene.html\n  cloudbake view data/scenes/*.toml -o gallery.html\n  cloudbake view cloud.glb --serve\n  "
+     "cloudbake view sculpts/ --serve\n  "
      "cloudbake view --watch sculpt.obj --voxels 150",
      "FILE", runView, "file to write, unless it is served", ".html"},
     {kShader, "shader", "ENGINE [ASSET.glb]", "engine to write for, and an asset whose constants the shaders get",

@@ -2,6 +2,7 @@
 // still or in motion, or compared with the truth.
 #include "app/commands.h"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "io/image/image.h"
 #include "io/report/figures.h"
 #include "pipeline/picture/compare.h"
+#include "pipeline/picture/folder_sheet.h"
 #include "pipeline/picture/picture.h"
 
 namespace cloudbake {
@@ -28,6 +30,36 @@ ExitCode runComparison(const Settings& settings, BakeReport& report, Stopwatch& 
   return ExitCode::kDone;
 }
 
+// A folder has a sheet of still pictures.
+void refuseOptionsOfOne(const CommandLine& line) {
+  for (const char* name : {"scene", "compare", "turntable", "sun-sweep", "animate", "channels", "steps"})
+    if (isGiven(line.given, name))
+      throw UsageError(fmt::format("--{} is for one asset, but {} is a folder: name a file of it", name, line.input.string()));
+}
+
+ExitCode runFolder(const CommandLine& line, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  refuseOptionsOfOne(line);
+  const FolderFiles files = filesToShow(line.input);
+  const FolderSheet drawn = drawFolder(files, settings, line.given, report, watch);
+  enforceStrict(settings.run.strict, report);
+  writeFileAtomically(settings.output.file, encodePng(drawn.sheet));
+  report.input = line.input.string();
+  report.output = settings.output.file.string();
+  report.vertices = report.triangles = 0;
+  report.info = {};
+  watch.lap(report.seconds, "write");
+  for (const std::string& one : files.unread) say(stderr, "cloudbake: " + one + "\n");
+  for (const FolderPanel& panel : drawn.panels)
+    if (panel.code != 0) say(stderr, "cloudbake: " + panel.error + "\n");
+  const size_t failed = drawn.failures();
+  tellReport(settings.run, report, {{"files", folderJson(drawn)}},
+             figureLine("sheet", "{} of {} files, {} columns", drawn.panels.size() - failed, drawn.panels.size(),
+                        sheetColumns(drawn.panels.size())));
+  if (failed == 0) return ExitCode::kDone;
+  say(stderr, fmt::format("cloudbake: {} of {} files cannot be shown\n", failed, drawn.panels.size()));
+  return ExitCode::kBound;
+}
+
 // Pictures are tens of megabytes that come and go: kept by malloc, their pages need not be cleared by the kernel every time.
 void keepLargeBlocks() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
@@ -43,6 +75,7 @@ ExitCode runPreview(const CommandLine& line) {
   report.command = "preview";
   report.input = (settings.scene ? *settings.scene : settings.source.input).string();
   Stopwatch watch;
+  if (std::filesystem::is_directory(line.input)) return runFolder(line, settings, report, watch);
   if (settings.picture.compare) return runComparison(settings, report, watch);
   const Scenery scenery = readScenery(settings, line.given, report);
   watch.lap(report.seconds, "read");

@@ -1,13 +1,18 @@
 // cloudbake view ASSET.glb -o view.html: assets or a scene live in a browser, in one page, which is written or served.
 #include "app/view.h"
 
+#include <fmt/format.h>
+
+#include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "app/commands.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/page/live_page.h"
+#include "pipeline/picture/folder_sheet.h"
 #include "pipeline/picture/picture.h"
 
 namespace cloudbake {
@@ -41,22 +46,58 @@ CommandLine withInput(const CommandLine& line, const std::filesystem::path& inpu
   return one;
 }
 
+// The files of a folder, each as a scene of the page with its name in the folder.
+void addFolder(const std::filesystem::path& folder, const Settings& settings, std::span<const Given> given, LiveScenes& live,
+               BakeReport& report) {
+  const FolderFiles files = filesToShow(folder);
+  for (const std::string& one : files.unread) say(stderr, "cloudbake: " + one + "\n");
+  int code = 0;
+  std::string error;
+  const size_t before = live.scenes.size();
+  for (const std::filesystem::path& file : files.files) {
+    std::tie(code, error) =
+        failureOf(file, [&] { live.scenes.push_back(liveScene(readFolderFile(file, settings, given, report), files.nameOf(file))); });
+    if (code == 0) continue;
+    ++live.failed;
+    say(stderr, "cloudbake: " + error + "\n");
+  }
+  if (live.scenes.size() == before) throw InputError(folder.string(), fmt::format("none of its {} files can be shown", files.files.size()));
+}
+
+// Scenes of one name are told apart by the paths of their files.
+void separateScenes(const std::vector<std::string>& paths, std::vector<LiveScene>& scenes) {
+  std::map<std::string, size_t> named;
+  for (const LiveScene& one : scenes) ++named[one.scene["name"].get<std::string>()];
+  for (size_t i = 0; i < scenes.size(); ++i)
+    if (named.at(scenes[i].scene["name"].get<std::string>()) > 1) scenes[i].scene["name"] = paths[i];
+}
+
 }  // namespace
 
-std::vector<LiveScene> readLiveScenes(const CommandLine& line, BakeReport& report) {
-  std::vector<LiveScene> scenes;
+LiveScenes readLiveScenes(const CommandLine& line, BakeReport& report) {
+  LiveScenes live;
+  std::vector<std::string> paths;
   std::vector<std::filesystem::path> inputs = line.inputs;
   if (inputs.empty()) inputs.push_back(line.input);  // --watch, or nothing for --scene
   for (const std::filesystem::path& input : inputs) {
     const CommandLine one = withInput(line, input);
     Settings settings = settingsOf(one, one.given);
     settings.picture.is_live = true;
+    if (std::filesystem::is_directory(input)) {
+      report.input += (report.input.empty() ? "" : ", ") + input.string();
+      addFolder(input, settings, one.given, live, report);
+      for (size_t i = paths.size(); i < live.scenes.size(); ++i)
+        paths.push_back((input / live.scenes[i].scene["name"].get<std::string>()).generic_string());
+      continue;
+    }
     const std::filesystem::path file = settings.scene ? *settings.scene : input;
     report.input += (report.input.empty() ? "" : ", ") + file.string();
     const Scenery scenery = settings.serve.watch ? bakeScenery(settings, one.given, report) : readScenery(settings, one.given, report);
-    scenes.push_back(namingFile(file.string(), [&] { return liveScene(scenery, file.stem().string()); }));
+    live.scenes.push_back(namingFile(file.string(), [&] { return liveScene(scenery, file.stem().string()); }));
+    paths.push_back(file.generic_string());
   }
-  return scenes;
+  separateScenes(paths, live.scenes);
+  return live;
 }
 
 ExitCode runView(const CommandLine& given) {
@@ -67,14 +108,16 @@ ExitCode runView(const CommandLine& given) {
   report.command = "view";
   report.output = settings.output.file.string();
   Stopwatch watch;
-  const std::vector<LiveScene> scenes = readLiveScenes(line, report);
+  const LiveScenes live = readLiveScenes(line, report);
   watch.lap(report.seconds, "read");
-  const std::string page = livePage(scenes);
+  const std::string page = livePage(live.scenes);
   enforceStrict(settings.run.strict, report);
   writeFileAtomically(settings.output.file, page);
   watch.lap(report.seconds, "write");
   tellReport(settings.run, report);
-  return ExitCode::kDone;
+  if (live.failed == 0) return ExitCode::kDone;
+  say(stderr, fmt::format("cloudbake: {} of {} files cannot be shown\n", live.failed, live.failed + live.scenes.size()));
+  return ExitCode::kBound;
 }
 
 }  // namespace cloudbake

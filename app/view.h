@@ -8,8 +8,15 @@
 
 namespace cloudbake {
 
-/// Reads the assets or the scene of the command line, or bakes what `line.input` names for --watch. Throws as the readers and the bake do.
-std::vector<LiveScene> readLiveScenes(const CommandLine& line, BakeReport& report);
+/// What a page shows, and the files of folders that it cannot show.
+struct LiveScenes {
+  std::vector<LiveScene> scenes;
+  size_t failed = 0;
+};
+
+/// Reads the assets, the scene or the folders of the command line, or bakes what `line.input` names for --watch. Throws as the readers and
+/// the bake do; a file of a folder that fails is reported on stderr, unless it is the only one.
+LiveScenes readLiveScenes(const CommandLine& line, BakeReport& report);
 
 /// Serves the page of `view`, and with --watch what is new in it, until a signal ends the process. Throws if
 /// there is nothing to show yet or the port cannot be used.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/vertex_normals.h"
 
 namespace cloudbake {
@@ -41,6 +43,11 @@ SurfaceMesh surfaceInScene(const Sculpt& sculpt) {
 
 std::string frameText(double metres_per_unit, char up, bool up_is_negative, const char* source) {
   return fmt::format("{:g} m per unit, {}{} up ({})", metres_per_unit, up_is_negative ? '-' : '+', up, source);
+}
+
+bool isFrameGiven(std::string_view frame_text) {
+  const std::string_view source = frame_text.substr(std::min(frame_text.size(), frame_text.find('(')));
+  return source.substr(0, source.find(')')).find("given") != std::string_view::npos;
 }
 
 }  // namespace cloudbake

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/types.h"
@@ -97,5 +98,7 @@ SurfaceMesh surfaceInScene(const Sculpt& sculpt);
 
 /// A text for the report, e.g. "0.01 m per unit, +Z up (as the file says)".
 std::string frameText(double metres_per_unit, char up, bool up_is_negative, const char* source);
+/// Whether such a text says that the unit or the axis was given by the user: "(as given)".
+bool isFrameGiven(std::string_view frame_text);
 
 }  // namespace cloudbake

@@ -29,7 +29,6 @@ namespace {
 constexpr float kBand = kBandHalfWidth_voxels;
 constexpr int kBlock = 8;  // OpenVDB's leaf: 8³ voxels
 constexpr float kSmallestRadius_voxels = 1.5F;
-constexpr double kSmallestBump_voxels = 2;
 constexpr double kFinestBump_voxels = 1e-3;  // so that float resolves the position in a bump everywhere
 
 // --- spheres ---

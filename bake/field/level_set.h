@@ -41,6 +41,9 @@ void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warn
 /// Upper estimate of the bytes that a level set of this box needs, including the mesh that is extracted from it.
 double estimateBytes(const Box& box, double voxel_size);
 
+/// Bumps of noise that are narrower than this are counted as kNoiseTooFine.
+inline constexpr double kSmallestBump_voxels = 2;
+
 /// The union of spheres. It is smooth if `blend` > 0, and then rises by blend/4 where two surfaces are equally far.
 /// Counts spheres with a radius under 1.5 voxels (they are kept, but the grid cannot represent them well) and coarse coordinates.
 /// Noise moves and scales with the shape, because its position is relative to the centre of the box. Every bump on an exact union is

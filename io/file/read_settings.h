@@ -12,10 +12,12 @@ namespace cloudbake {
 
 enum class UpAxis { kX, kY, kZ };
 
-/// The frame is for files that state none or a wrong one. glTF's frame is fixed, so setting it for a glTF is an error.
+/// The frame is for files that state none or a wrong one. glTF's frame is fixed, so setting it for a glTF is an error, unless it is for the
+/// files of a mixed folder that state none.
 struct ReadSettings {
   std::optional<double> metres_per_unit{};  ///< > 0; unset = as stated in the file, else 1
   std::optional<UpAxis> up_axis{};          ///< unset = as stated in the file, else +Y
+  bool frame_if_unstated = false;           ///< a unit or an axis that the file states is kept
   bool allow_outside = false;               ///< a file may refer to files outside its own folder
   std::optional<int> scene_index{};         ///< glTF: the scene to bake, ≥ 0; unset = the file's default scene
   uint64_t memory_limit = kMemoryLimit;     ///< bytes; an estimate above this is an error

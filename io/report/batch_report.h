@@ -47,6 +47,7 @@ struct BatchReport {
   bool interrupted = false;
   std::vector<AssetRecord> assets;   ///< in the order of the manifest
   std::vector<std::string> removed;  ///< outputs that --prune removed
+  std::string frames;                ///< for people: which sculpts got the unit and the axis that were given for all; not in JSON
   double seconds = 0, processor_seconds = 0;
   uint64_t peak_memory = 0;  ///< resident memory, bytes
   int threads = 0;

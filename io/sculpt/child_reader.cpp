@@ -227,13 +227,13 @@ pid_t startChild(const fs::path& file, const std::string& bytes, const std::stri
   openInMemory(input, bytes);
   const Inherited inherited[] = {
       {STDIN_FILENO}, {STDOUT_FILENO}, {STDERR_FILENO}, {kAnswerDescriptor, to_write.number}, {kInputDescriptor, input.number}};
-  return startProcess(
-      settings.child_program,
-      {settings.child_program.string(), kChildReaderCommand, file.string(), extension,
-       settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
-       settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
-       std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")},
-      inherited);
+  return startProcess(settings.child_program,
+                      {settings.child_program.string(), kChildReaderCommand, file.string(), extension,
+                       settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
+                       settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
+                       std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) +
+                           (settings.allow_outside ? " 1" : " 0") + (settings.frame_if_unstated ? " 1" : " 0")},
+                      inherited);
 }
 
 // A process that is not left alone: it has ended when this has.
@@ -317,8 +317,9 @@ int serveChildReader(int argc, char** argv) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches this process too, but the parent decides whether to stop
   std::string_view limits = argv[5];
-  const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits));
-  if (!seconds || !memory || !outside) return 1;
+  const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits)),
+             if_unstated = parseInteger(takeWord(limits));
+  if (!seconds || !memory || !outside || !if_unstated) return 1;
   const auto limit = [](auto resource, uint64_t most) {
     const rlimit value{most, most};
     setrlimit(resource, &value);
@@ -334,6 +335,7 @@ int serveChildReader(int argc, char** argv) {
     const fs::path file = argv[1];
     ReadSettings settings;
     settings.allow_outside = *outside != 0;
+    settings.frame_if_unstated = *if_unstated != 0;
     settings.metres_per_unit = parseNumber(argv[3]);
     if (const auto axis = parseInteger(argv[4])) settings.up_axis = UpAxis(*axis);
     FilesRead files;

@@ -61,6 +61,13 @@ Affine FileFrame::toScene() const {
   return frame;
 }
 
+ReadSettings FileFrame::wanted(const ReadSettings& settings) const {
+  ReadSettings wanted = settings;
+  if (settings.frame_if_unstated && says_unit) wanted.metres_per_unit.reset();
+  if (settings.frame_if_unstated && says_axes) wanted.up_axis.reset();
+  return wanted;
+}
+
 FileFrame FileFrame::replacedBy(const ReadSettings& settings) const {
   FileFrame frame = *this;
   frame.metres_per_unit = settings.metres_per_unit.value_or(metres_per_unit);

@@ -23,6 +23,8 @@ struct FileFrame {
 
   /// From the file's frame to metres, +Y up, right-handed.
   Affine toScene() const;
+  /// The settings without the unit and the axis that this file keeps as it states them (frame_if_unstated).
+  ReadSettings wanted(const ReadSettings& settings) const;
   /// Unit and axis of the settings take the place of the file's.
   FileFrame replacedBy(const ReadSettings& settings) const;
   /// For the report.

@@ -66,7 +66,8 @@ FbxProperties assimpSettings(const aiScene& scene, const std::string& bytes) {
 }
 
 // From the file's frame to metres, +Y up.
-Affine sceneFrame(const fs::path& file, const FileFrame& found, const ReadSettings& settings, std::string& text, Warnings& warnings) {
+Affine sceneFrame(const fs::path& file, const FileFrame& found, const ReadSettings& asked, std::string& text, Warnings& warnings) {
+  const ReadSettings settings = found.wanted(asked);
   const bool assumes_unit = !found.says_unit && !settings.metres_per_unit, assumes_axis = !found.says_axes && !settings.up_axis;
   if (assumes_unit || assumes_axis)
     warnings.add(WarningKind::kUnitsAssumed, unitsAssumedText(file, assumes_unit ? found.unit_name : "", assumes_axis));

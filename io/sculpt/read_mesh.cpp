@@ -23,17 +23,42 @@ std::string lowerExtension(const fs::path& file) {
   return lowerCase(extension);
 }
 
-// Formats that no packaged library can read.
-void refuseByName(const fs::path& file, const std::string& extension) {
-  const auto refuse = [&](const std::string& name) {
-    throw InputError(file.string(), name + " is not supported; export the sculpt as glTF, FBX or OBJ");
-  };
-  for (const char* usd : {"usd", "usda", "usdc", "usdz"})
-    if (extension == usd) refuse("USD");
-  if (extension == "abc") refuse("Alembic");
-  if (extension == "max") refuse("a 3ds Max scene");
-  if (extension == "ma" || extension == "mb") refuse("a Maya scene");
-  if (extension == "ztl" || extension == "zpr") refuse("a ZBrush project");
+// Formats that no packaged library can read, and scenes of programs that write formats which one can.
+struct UnreadFormat {
+  std::string_view extensions, name;
+  bool is_tried = false;  ///< a library reads some versions of it, if the file is named
+};
+constexpr std::string_view kExportSculpt = "export the sculpt as glTF, FBX or OBJ", kExportVolume = "export the volume as OpenVDB (.vdb)";
+constexpr UnreadFormat kUnreadFormats[] = {
+    {" usd usda usdc usdz ", "USD"},
+    {" abc ", "Alembic"},
+    {" max ", "a 3ds Max scene"},
+    {" ma mb ", "a Maya scene"},
+    {" ztl zpr goz ", "a ZBrush project"},
+    {" blend ", "a Blender scene", true},
+    {" c4d ", "a Cinema 4D scene", true},
+    {" hip hiplc hipnc bgeo geo ", "a Houdini file"},
+    {" 3b ", "a 3DCoat scene"},
+    {" mud ", "a Mudbox scene"},
+    {" nom ", "a Nomad Sculpt scene"},
+    {" spp ", "a Substance 3D Painter project"},
+    {" sbs sbsar ", "a Substance material"},
+    {" lxo ", "a Modo scene"},
+    {" skp ", "a SketchUp model", true},
+    {" 3dm ", "a Rhino model", true},
+    {" step stp iges igs ", "a CAD model", true},
+    {" uasset umap ", "an Unreal asset"},
+    {" unity prefab unitypackage ", "a Unity asset"},
+    {" tscn scn tres ", "a Godot scene"},
+    {" nvdb ", "a NanoVDB volume"},
+    {" f3d vol ", "a volume of this kind"},
+};
+
+const UnreadFormat* unreadFormatOf(const std::string& extension) {
+  const auto found = std::find_if(std::begin(kUnreadFormats), std::end(kUnreadFormats), [&](const UnreadFormat& format) {
+    return !extension.empty() && format.extensions.find(" " + extension + " ") != std::string_view::npos;
+  });
+  return found == std::end(kUnreadFormats) ? nullptr : &*found;
 }
 
 // Applies the user's frame (scale and axes) to a format without one.
@@ -83,9 +108,10 @@ void applyFrame(const fs::path& file, const ReadSettings& settings, Sculpt& scul
 
 Sculpt readByExtension(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   const std::string extension = lowerExtension(file);
-  refuseByName(file, extension);
+  if (const UnreadFormat* format = unreadFormatOf(extension); format && !format->is_tried)
+    throw InputError(file.string(), std::string(format->name) + " is not supported; " + cureWithoutReader(file));
   if (extension == "gltf" || extension == "glb") {
-    if (settings.metres_per_unit || settings.up_axis)
+    if ((settings.metres_per_unit || settings.up_axis) && !settings.frame_if_unstated)
       throw InputError(file.string(), "glTF has a fixed unit and up axis; leave --units and --up out, or change the file's root node");
     return readGltf(file, bytes, settings, warnings);
   }
@@ -183,6 +209,15 @@ void cleanNames(Sculpt& sculpt) {
 }
 
 }  // namespace
+
+std::string_view formatWithoutReader(const fs::path& file) {
+  const UnreadFormat* format = unreadFormatOf(lowerExtension(file));
+  return format ? format->name : std::string_view();
+}
+
+std::string cureWithoutReader(const fs::path& file) {
+  return std::string(formatWithoutReader(file).find("volume") == std::string_view::npos ? kExportSculpt : kExportVolume);
+}
 
 std::string unitsAssumedText(const fs::path& file, const std::string& unit, bool axis) {
   const std::string both = unit + (!unit.empty() && axis ? ", " : "") + (axis ? "+Y up" : "");

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/sculpt.h"
 #include "io/file/read_settings.h"
@@ -29,6 +30,9 @@ Sculpt readMesh(const std::filesystem::path& file, const std::string& bytes, con
 /// Whether the extension is that of a sculpt's usual formats, and their names: ".gltf, .glb, …". readMesh tries others too.
 bool isSculptFile(const std::filesystem::path& file);
 std::string sculptExtensions();
+/// What a file of this name is, if it is of a known program and no reader takes it: "a Maya scene"; else empty. And what to do with it.
+std::string_view formatWithoutReader(const std::filesystem::path& file);
+std::string cureWithoutReader(const std::filesystem::path& file);
 /// Whether a file of this name is always read in a child process, if there is a program for it (ReadSettings::child_program).
 bool isReadByChild(const std::filesystem::path& file);
 

@@ -10,6 +10,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/sculpt.h"
+#include "core/text/scan.h"
 #include "io/file/own_file.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
@@ -186,6 +188,28 @@ void removeLeftovers(const std::vector<PlannedAsset>& assets, const fs::path& ou
   for (const fs::path& folder : folders) removeAbandonedFiles(folder);
 }
 
+// Which assets --units and --up were for, by the formats of their sculpts. Those that were not baked or read are left out.
+std::string framesText(const std::vector<PlannedAsset>& assets, const std::vector<AssetRecord>& records) {
+  std::map<std::string, size_t> given, kept;
+  size_t given_count = 0, kept_count = 0;
+  for (size_t i = 0; i < assets.size(); ++i) {
+    if (!assets[i].from.read.frame_if_unstated || !records[i].report.is_object() || !records[i].report.contains("frame")) continue;
+    const bool is_given = isFrameGiven(records[i].report["frame"].get<std::string>());
+    ++(is_given ? given : kept)[lowerCase(assets[i].from.input.extension().string())];
+    ++(is_given ? given_count : kept_count);
+  }
+  const auto formats = [](const std::map<std::string, size_t>& of) {
+    std::string text;
+    for (const auto& [extension, count] : of) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, extension);
+    return text;
+  };
+  if (given_count + kept_count == 0) return "";
+  std::string text = fmt::format("--units and --up are for {} of {} sculpts", given_count, given_count + kept_count);
+  if (given_count > 0) text += fmt::format(" ({})", formats(given));
+  if (kept_count > 0) text += fmt::format("; {} state their own ({})", kept_count, formats(kept));
+  return text;
+}
+
 BatchReport reportOf(const Settings& settings, const BatchPlan& plan) {
   BatchReport report;
   report.source = plan.source;
@@ -255,7 +279,10 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   removeLeftovers(plan.assets, output);
   BatchReport report = reportOf(settings, plan);
   report.assets = judgeAssets(work.assets, work.inputs, settings);
+  if (const BatchOrders& orders = batch.orders; orders.done.empty() && orders.alone.empty() && orders.crashed.empty())
+    for (const std::string& note : plan.notes) listener.tell("cloudbake: " + note + "\n");
   runAssets(work.assets, work.inputs, plan, settings, stop, listener, report.assets);
+  report.frames = framesText(work.assets, report.assets);
   const int signal = stop;
   report.interrupted = signal > 0;
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
@@ -277,6 +304,7 @@ std::string listWork(const Settings& settings, std::span<const Given> given) {
   const std::vector<AssetRecord> records = judgeAssets(work.assets, work.inputs, settings);
   const fs::path& output = settings.output.file;
   std::string text = workText(work.assets, records);
+  for (const std::string& note : work.plan.notes) text += "note   " + note + "\n";
   if (settings.batch.live)
     for (const AssetRecord& asset : records)
       if (asset.state != AssetState::kFresh || !hasLiveView(output, asset.name)) text += "write   " + liveViewName(asset.name) + "\n";

@@ -2,6 +2,8 @@
 // SIAM J. Appl. Math. 17, 1969, section 5), which is within 4/3 of the best.
 #include "pipeline/batch/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 #include <iterator>
@@ -16,10 +18,12 @@
 #include "io/sculpt/read_mesh.h"
 #include "pipeline/asset/levels.h"
 #include "pipeline/batch/manifest.h"
+#include "pipeline/batch/names.h"
 #include "pipeline/batch/state.h"
 #include "pipeline/options/presets.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/scene/scene_file.h"
+#include "pipeline/sources/folder_files.h"
 
 namespace cloudbake {
 
@@ -93,11 +97,21 @@ std::vector<Given> optionsOf(const std::vector<ManifestValue>& values, const Man
 
 bool suits(const Given& given, const PlannedAsset& asset) { return (given.option->inputs & inputBit(asset.from.kind)) != 0; }
 
-// Defaults and options of the command line are used if they apply to the asset; a cloud's own options must apply.
+bool isOfFrame(const Given& given) {
+  const std::string_view name = given.option->name;
+  return name == "units" || name == "up";
+}
+
+// Defaults and options of the command line are used if they apply to the asset; a cloud's own options must apply. A frame that is for all
+// sculpts is for those whose files state none.
 void chooseOptions(PlannedAsset& asset, const Request& request) {
+  const bool has_own_frame = std::any_of(request.own.begin(), request.own.end(), isOfFrame);
   const auto addSuiting = [&](const std::vector<Given>& options) {
-    for (const Given& option : options)
-      if (suits(option, asset)) asset.given.push_back(option);
+    for (const Given& option : options) {
+      if (!suits(option, asset)) continue;
+      if (isOfFrame(option) && !has_own_frame) asset.from.read.frame_if_unstated = true;
+      asset.given.push_back(option);
+    }
   };
   addSuiting(request.defaults);
   for (const Given& option : request.own) {
@@ -159,12 +173,33 @@ void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request) {
 
 std::string templateOf(const Request& request, const char* fallback) { return request.name ? request.name->value : fallback; }
 
-void addSculpt(BatchPlan& plan, const fs::path& file, const fs::path& root, const Request& request) {
+// A folder as a part of a name: "a/b" becomes "a_b".
+std::string folderWord(const fs::path& folder) {
+  std::string word;
+  for (const fs::path& part : folder.lexically_normal().relative_path())
+    if (part != "." && part != "..") word += (word.empty() || part.empty() ? "" : "_") + part.string();
+  return word;
+}
+
+// Sets the name, and the names that take its place if several files have the same. Those have the words that the template does not have;
+// `folder` is the one that tells files apart, which for the files of a list, without a common root, is not {folder}.
+void nameByFile(PlannedAsset& asset, const std::string& pattern, const Words& words, const fs::path& folder, const Request& request) {
+  const auto has = [&](const char* word) { return pattern.find(word) != pattern.npos; };
+  asset.name = fillTemplate(pattern, words, request, request.name.value_or(request.place));
+  asset.is_named_by_file = has("{stem}");
+  if (!asset.is_named_by_file) return;
+  const bool has_folder = has("{folder}") && folder == words.at("folder");
+  asset.other_names = namesWith(asset.name, has("{ext}") ? "" : words.at("ext"), has_folder ? "" : folderWord(folder));
+}
+
+// A sculpt below the folder `root`, or one of a list, which has none.
+void addSculpt(BatchPlan& plan, const fs::path& file, const std::optional<fs::path>& root, const Request& request) {
   PlannedAsset asset;
+  const std::string folder = root ? lexicalFolder(file, *root) : "";
   const Words words{{"stem", file.stem().string()},
                     {"ext", lowerCase(file.extension().string()).substr(file.has_extension() ? 1 : 0)},
-                    {"folder", lexicalFolder(file, root)}};
-  asset.name = fillTemplate(templateOf(request, "{folder}/{stem}.glb"), words, request, request.name.value_or(request.place));
+                    {"folder", folder}};
+  nameByFile(asset, templateOf(request, "{folder}/{stem}.glb"), words, root ? fs::path(folder) : file.parent_path(), request);
   asset.source = file.string();
   asset.from.kind = isVdbFile(file) ? SourceKind::kVolume : SourceKind::kSculpt;
   asset.from.input = file;
@@ -189,7 +224,9 @@ void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input
       request.own.push_back({findAssetOption("seed"), seed, request.file, request.place.line, request.place.column});
     }
     const char* fallback = cloud.seeds.empty() ? "{stem}.glb" : "{stem}_{seed}.glb";
-    asset.name = fillTemplate(templateOf(request, fallback), words, request, request.name.value_or(request.place));
+    nameByFile(asset, templateOf(request, fallback), words, is_preset ? "" : lexicalFolder(input, fs::path(request.file).parent_path()),
+               request);
+    if (is_preset) asset.is_named_by_file = false;
     addAsset(plan, std::move(asset), request);
   }
 }
@@ -251,9 +288,18 @@ void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output,
   std::error_code error;
   if (fs::equivalent(folder, output, error)) throw UsageError("-o is the folder of the sculpts: choose another folder for the assets");
   std::set<fs::path> folders;
-  for (const fs::path& file : filesBelow(folder, output, folders))
-    if ((isSculptFile(file) || isVdbFile(file)) && !isWritten(plan, file)) addSculpt(plan, file, folder, request);
-  if (plan.assets.empty()) throw InputError(folder.string(), "no sculpt in this folder: " + sculptExtensions() + " or .vdb");
+  std::vector<fs::path> unread;
+  for (const fs::path& file : filesBelow(folder, output, folders)) {
+    if (isWritten(plan, file)) continue;
+    if (isSculptFile(file) || isVdbFile(file))
+      addSculpt(plan, file, folder, request);
+    else
+      unread.push_back(file);
+  }
+  plan.notes = linesAboutUnread(unread);
+  if (plan.assets.empty())
+    throw InputError(folder.string(), fmt::format("no sculpt in this folder: {} or .vdb{}{}", sculptExtensions(),
+                                                  plan.notes.empty() ? "" : "; ", fmt::join(plan.notes, "; ")));
   plan.watched.assign(folders.begin(), folders.end());
 }
 
@@ -268,7 +314,7 @@ void planList(BatchPlan& plan, const fs::path& list, const Request& request) {
     if (!fs::is_regular_file(file))
       throw InputError(list.string(), lines.line,
                        "no file '" + file.string() + "': the list has a path per line, relative to the working folder");
-    addSculpt(plan, file, file.parent_path(), request);
+    addSculpt(plan, file, std::nullopt, request);
   }
   if (plan.assets.empty()) throw InputError(list.string(), "the list names no file: give a path per line");
   if (!from_stdin) plan.watched.push_back(list);
@@ -347,6 +393,7 @@ BatchPlan planBatch(const Settings& settings, std::span<const Given> given) {
     throw InputError(plan.source, "a manifest (.toml) or a folder is needed: bake one sculpt with `cloudbake bake`");
   else
     throw IoError(plan.source, "no such manifest (.toml) or folder: check the name");
+  for (std::string& line : separateNames(plan.assets, settings.output.file)) plan.notes.push_back(std::move(line));
   checkNames(plan, settings.output.file);
   return plan;
 }

@@ -15,9 +15,11 @@ namespace cloudbake {
 
 /// One asset to make.
 struct PlannedAsset {
-  std::string name;    ///< of the output, relative to the output folder
-  size_t levels = 0;   ///< of detail, which are outputs too: levelNames
-  std::string source;  ///< for messages: "preset humilis, seed 7", or a path
+  std::string name;                      ///< of the output, relative to the output folder
+  bool is_named_by_file = false;         ///< the name has the stem of a file, so that other_names may replace it
+  std::vector<std::string> other_names;  ///< if another asset has the same name (pipeline/batch/names.h)
+  size_t levels = 0;                     ///< of detail, which are outputs too: levelNames
+  std::string source;                    ///< for messages: "preset humilis, seed 7", or a path
   SourceSettings from;
   std::vector<Given> given;  ///< options that were set for it, in order
   double cost_seconds = 0;   ///< estimate, on one thread
@@ -35,6 +37,7 @@ struct BatchPlan {
   std::optional<SceneNeeds> scene;
   std::vector<std::filesystem::path> watched;  ///< the manifest, and the folders that were searched
   std::set<std::filesystem::path> reports;     ///< of this run, canonical
+  std::vector<std::string> notes;              ///< for people: names that several files had, files without a reader
 };
 
 /// Reads the manifest (or lists the folder, or reads the list) and expands globs, seeds and names. `given` are the options of the command

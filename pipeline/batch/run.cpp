@@ -11,6 +11,7 @@
 #include "core/memory_budget.h"
 #include "core/parallel.h"
 #include "core/text/json.h"
+#include "core/text/markup.h"
 #include "io/file/input_files.h"
 #include "io/file/own_file.h"
 #include "io/file/process.h"
@@ -90,7 +91,6 @@ AssetBytes bake(const PlannedAsset& asset, uint64_t memory, Run& run, AssetRecor
   }
   report.output = record.name;
   record.report = parseJson(reportJson(report)).value();
-  run.listener.tell(warningLines(report));
   AssetBytes bytes{std::move(baked.glb), {}};
   for (LevelAsset& level : baked.levels) bytes.levels.push_back(std::move(level.glb));
   return bytes;
@@ -231,6 +231,34 @@ std::string failureLine(const AssetRecord& record) {
   return record.state == AssetState::kFailed ? "cloudbake: " + record.error + "\n" : "";
 }
 
+// The warnings of all assets that this batch has baked: a line per kind, because one cause often repeats in every seed or sculpt. The
+// reports have those of each asset.
+std::string warningsOf(const std::vector<AssetRecord>& records, const BatchOrders& orders) {
+  struct Told {
+    std::string input, first;
+    size_t assets = 0;
+    uint64_t count = 0;
+  };
+  std::map<std::string, Told> kinds;
+  for (const AssetRecord& record : records) {
+    const bool is_baked = record.state != AssetState::kFromCache && (!record.reason.empty() || orders.done.contains(record.name));
+    if (!is_baked || !record.report.is_object()) continue;
+    for (const Json& warning : record.report.value("warnings", Json::array())) {
+      Told& told = kinds[warning.value("kind", "")];
+      if (told.assets++ == 0) told.input = record.report.value("input", ""), told.first = warning.value("first", "");
+      told.count += warning.value("count", uint64_t(1));
+    }
+  }
+  std::string lines;
+  for (const auto& [kind, told] : kinds) {
+    const std::string times = told.count > 1 ? fmt::format(" ({} in all)", told.count) : "";
+    lines += told.assets == 1 ? fmt::format("cloudbake: {}: warning: {}: {}{}\n", onOneLine(told.input), kind, onOneLine(told.first), times)
+                              : fmt::format("cloudbake: warning: {}: {} assets, the first is {}: {}{}\n", kind, told.assets,
+                                            onOneLine(told.input), onOneLine(told.first), times);
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, const std::vector<AssetInputs>& inputs,
@@ -303,6 +331,7 @@ void runAssets(const std::vector<PlannedAsset>& assets, std::vector<AssetInputs>
     jobs[job].memory = kAllMemory;
     runJob(job);
   }
+  listener.tell(warningsOf(records, settings.batch.orders));
 }
 
 }  // namespace cloudbake

@@ -52,6 +52,7 @@ std::string settingsText(const PlannedAsset& asset, const BatchPlan& plan) {
   std::string text = std::to_string(int(asset.from.kind)) + "\n";
   for (const Given& given : asset.given)
     text += given.option->name + ("=" + (std::string_view(given.option->name) == "scene" ? "" : given.value)) + "\n";
+  if (asset.from.read.frame_if_unstated) text += "frame if unstated\n";
   return text + sceneText(plan.scene);
 }
 

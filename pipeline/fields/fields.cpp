@@ -20,6 +20,25 @@ namespace {
 constexpr int kBaseOctaves = 2;
 constexpr float kBumpSpacing = 5;  // of the bumps of a base, in heights
 
+// The size of the largest bumps of this many octaves of noise.
+float bumpSize(const FieldSettings& settings, float amplitude, int octaves, float longest_side) {
+  const float least = amplitude * float(billowSlope(octaves));  // smaller bumps would come loose
+  return settings.noise_size ? settings.noise_size->resolve(longest_side) : 1.5F * least;
+}
+
+// The octaves of noise that were asked for, else as many, up to 3, as the lattice of the mesh can show. The integration field has the same.
+int noiseOctaves(const Cloud& cloud, const FieldSettings& settings, float amplitude, float longest_side) {
+  constexpr int kUsual = 3;
+  constexpr float kClear = 1.001F * float(kSmallestBump_voxels);  // whatever is rounded
+  if (settings.noise_octaves) return *settings.noise_octaves;
+  const float voxel = cloud.voxel_size      ? float(*cloud.voxel_size)
+                      : settings.voxel_size ? *settings.voxel_size
+                                            : longest_side / float(settings.voxels);
+  int octaves = kUsual;
+  while (octaves > 1 && bumpSize(settings, amplitude, octaves, longest_side) < kClear * voxel * float(1 << (octaves - 1))) --octaves;
+  return octaves;
+}
+
 LevelSetSettings levelSetSettings(const Cloud& cloud, const FieldSettings& settings, Lattice lattice, float longest_side) {
   LevelSetSettings result;
   result.voxels = settings.voxels;
@@ -39,9 +58,8 @@ LevelSetSettings levelSetSettings(const Cloud& cloud, const FieldSettings& setti
   result.memory_limit = settings.memory_limit;
   if (settings.noise && settings.noise->value > 0) {
     const float amplitude = settings.noise->resolve(longest_side);
-    const float least = amplitude * float(billowSlope(settings.noise_octaves));  // smaller bumps would come loose
-    const float size = settings.noise_size ? settings.noise_size->resolve(longest_side) : 1.5F * least;
-    result.noise = BillowNoise{amplitude, size, settings.noise_octaves, settings.noise_seed};
+    const int octaves = noiseOctaves(cloud, settings, amplitude, longest_side);
+    result.noise = BillowNoise{amplitude, bumpSize(settings, amplitude, octaves, longest_side), octaves, settings.noise_seed};
   }
   return result;
 }

@@ -92,7 +92,7 @@ struct FieldSettings {
   std::optional<Length> base_bump_size;  ///< unset: 5 times their height
   std::optional<Length> noise;
   std::optional<Length> noise_size;  ///< unset: 1.5 times the least size at which bumps stay attached
-  int noise_octaves = 3;
+  std::optional<int> noise_octaves;  ///< unset: 3, or as many as the voxels hold
   uint64_t noise_seed = 1;
   uint64_t memory_limit = kMemoryLimit;
 };

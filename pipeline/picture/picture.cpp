@@ -372,6 +372,10 @@ Scenery bakeScenery(const Settings& settings, std::span<const Given> given, Bake
   return completed(std::move(scenery), settings, given, report);
 }
 
+Image stillPicture(const Scenery& scenery, StageSeconds& seconds) {
+  return drawPicture(scenery.scene, instancesAt(scenery, scenery.scene.view), {}, seconds, nullptr);
+}
+
 namespace {
 
 Pictures allPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch) {

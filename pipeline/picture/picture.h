@@ -36,6 +36,9 @@ Scenery readScenery(const Settings& settings, std::span<const Given> given, Bake
 /// is baked in memory, with the options of the bake among `given`. Throws UsageError if there are such options for an asset.
 Scenery bakeScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 
+/// The still picture of the scenery's view, ready for 8 bits. Adds the seconds of each renderer to `seconds`.
+Image stillPicture(const Scenery& scenery, StageSeconds& seconds);
+
 /// Draws the pictures that the view of the scenery asks for. Throws UsageError, before the sink gets anything, if that is channels or steps
 /// of a scene without mesh clouds.
 Pictures drawPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch);

@@ -86,12 +86,78 @@ TEST(Plan, NoTwoAssetsHaveOneName) {
   const BatchFolder folder;
   folder.box("a.obj");
   folder.box("A.ply");
-  expectError<UsageError>([&] { planBatch(folder.settings(), {}); }, "is the output of ");
   const Settings twice = folder.manifest("[[cloud]]\npreset = 'hero'\n\n[[cloud]]\npreset = 'hero'\n");
   expectError<InputError>([&] { planBatch(twice, {}); }, "m.toml:5:10: 'hero.glb' is the output of preset hero and of preset hero");
   Settings apart = folder.settings();
   apart.batch.name = "{stem}_{ext}.glb";
   EXPECT_EQ(namesOf(planBatch(apart, {}).assets), (Names{"A_ply.glb", "a_obj.glb"}));
+}
+
+TEST(Plan, FilesOfOneStemGetNamesOfTheirOwn) {
+  const BatchFolder folder;
+  for (const char* name : {"a.obj", "A.ply", "b.obj", "deep/a.obj", "deep/a_obj.stl", "deep/a.stl"}) folder.box(name);
+  const BatchPlan plan = planBatch(folder.settings(), {});
+  // a_obj is taken below deep/, so that both of its a are numbered
+  EXPECT_EQ(namesOf(plan.assets), (Names{"A_ply.glb", "a_obj.glb", "b.glb", "deep/a_1.glb", "deep/a_2.glb", "deep/a_obj.glb"}));
+  ASSERT_EQ(plan.notes.size(), 2U);
+  EXPECT_EQ(plan.notes[0].find("2 files are named 'a': A_ply.glb <- "), 0U) << plan.notes[0];
+
+  Settings flat = folder.settings();
+  flat.batch.name = "{stem}.glb";
+  EXPECT_EQ(namesOf(planBatch(flat, {}).assets), (Names{"A_1.glb", "a_2.glb", "b.glb", "a_3.glb", "a_4.glb", "a_obj.glb"}));
+}
+
+TEST(Plan, WordsOfANameAreNotRepeated) {
+  const BatchFolder folder;
+  folder.write("in/list.txt", folder.box("x/a.obj").string() + "\n" + folder.box("y/a.obj").string() + "\n");
+  folder.box("y/c.OBJ");
+  Settings settings = folder.settings();
+  settings.batch.name = "{stem}_{ext}.glb";
+  EXPECT_EQ(namesOf(planBatch(settings, {}).assets), (Names{"a_obj_x.glb", "a_obj_y.glb", "c_obj.glb"}));
+  settings = folder.settings();
+  settings.batch.inputs.clear();
+  settings.batch.input_list = folder.in / "list.txt";
+  const std::vector<PlannedAsset> assets = planBatch(settings, {}).assets;
+  EXPECT_TRUE(assets[0].name.ends_with("_in_x.glb")) << assets[0].name;
+  EXPECT_TRUE(assets[1].name.ends_with("_in_y.glb")) << assets[1].name;
+}
+
+// A record in the output folder holds a name for the file that it came from, whatever is added or removed beside it.
+TEST(Plan, AFileKeepsTheNameOfItsRecord) {
+  const BatchFolder folder;
+  const auto record = [&](const std::string& name, const fs::path& source) {
+    AssetRecord asset;
+    asset.name = name, asset.source = source.string();
+    writeOutput(folder.out, asset, {"glb", {}});
+  };
+  const fs::path obj = folder.box("a.obj");
+  record("a.glb", obj);
+  const fs::path stl = folder.box("a.stl");
+  EXPECT_EQ(namesOf(planBatch(folder.settings(), {}).assets), (Names{"a.glb", "a_stl.glb"}));
+  record("a_stl.glb", stl);
+  fs::remove(obj);
+  EXPECT_EQ(namesOf(planBatch(folder.settings(), {}).assets), Names{"a_stl.glb"});
+  folder.box("a.obj", 2);
+  EXPECT_EQ(namesOf(planBatch(folder.settings(), {}).assets), (Names{"a.glb", "a_stl.glb"}));
+  // a record of another folder of the same batch, seen from another working folder
+  const BatchFolder other;
+  const fs::path x = other.box("x/a.obj"), y = other.box("y/a.obj");
+  AssetRecord asset;
+  asset.name = "a.glb", asset.source = "in/y/a.obj";
+  writeOutput(other.out, asset, {"glb", {}});
+  Settings flat = other.settings();
+  flat.batch.name = "{stem}.glb";
+  EXPECT_EQ(namesOf(planBatch(flat, {}).assets), (Names{"a_x.glb", "a.glb"}));  // as a_obj would not tell all apart
+}
+
+TEST(Plan, AFrameForAllIsForFilesThatStateNone) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.write("in/m.toml", "[[cloud]]\nsculpt = 'a.obj'\nunits = 1\n");
+  const std::vector<Given> given = options({"units=0.01"});
+  EXPECT_TRUE(planBatch(folder.settings(), given).assets[0].from.read.frame_if_unstated);
+  EXPECT_FALSE(planBatch(folder.settings(), {}).assets[0].from.read.frame_if_unstated);
+  EXPECT_FALSE(planBatch(folder.settings(folder.in / "m.toml"), given).assets[0].from.read.frame_if_unstated);
 }
 
 TEST(Plan, NoAssetReplacesASculpt) {

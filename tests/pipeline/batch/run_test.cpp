@@ -173,6 +173,20 @@ TEST(Run, WarningsOfAnAssetAreTold) {
   EXPECT_TRUE(contains(listener.told, "open.obj: warning: open-edges: ")) << listener.told;
 }
 
+// A warning that several assets have is one line with a count.
+TEST(Run, AWarningOfSeveralAssetsIsToldOnce) {
+  const BatchFolder folder;
+  SurfaceMesh open = boxMesh({0, 0, 0}, {1, 1, 1});
+  open.triangles.pop_back();
+  for (const char* name : {"in/a.obj", "in/b.obj", "in/c.obj"}) folder.write(name, objText(open));
+  folder.box("d.obj");
+  Listener listener;
+  run(folder.settings(), listener);
+  EXPECT_TRUE(contains(listener.told, "cloudbake: warning: open-edges: 3 assets, the first is ")) << listener.told;
+  EXPECT_TRUE(contains(listener.told, "cloudbake: warning: units-assumed: 4 assets, the first is ")) << listener.told;
+  EXPECT_EQ(std::count(listener.told.begin(), listener.told.end(), '\n'), 2) << listener.told;
+}
+
 // A level that an earlier bake has left is told of, unless it is known to be ours: then it is removed.
 TEST(Run, LevelsOfAnEarlierBakeAreToldOf) {
   const BatchFolder folder;
@@ -416,8 +430,9 @@ TEST(Run, WhatNeedsMoreThanItsShareRunsAgainAlone) {
   ASSERT_EQ(listener.events.size(), 16U);
   EXPECT_EQ(std::count(listener.events.begin(), listener.events.begin() + 8, "postpone a.glb"), 1);
   for (size_t i = 8; i < 16; i += 2) EXPECT_EQ("finish" + listener.events[i].substr(5), listener.events[i + 1]) << "alone";
-  EXPECT_EQ(std::count(listener.told.begin(), listener.told.end(), '\n'), 4)
-      << "units-assumed of each, once: nobody is told of the first try";
+  EXPECT_EQ(std::count(listener.told.begin(), listener.told.end(), '\n'), 1) << listener.told;
+  EXPECT_TRUE(contains(listener.told, "units-assumed: 4 assets, ") && contains(listener.told, "(4 in all)"))
+      << "units-assumed of each, once: nobody is told of the first try: " << listener.told;
   EXPECT_FALSE(contains(listener.told, "memory")) << listener.told;
 }
 

@@ -187,14 +187,37 @@ TEST(Fields, TheSpacingOfNoiseUnlessGiven) {
   EXPECT_STREQ(findOption("noise-size", kGrow)->fallback, "5 x noise (3 octaves)");
   const double five = 1.5 * billowSlope(3);
   EXPECT_NEAR(five, 5, 0.5);
-  const std::string unset = bytes({"voxels=24", "noise=0.1"});
-  EXPECT_EQ(unset, bytes({"voxels=24", "noise=0.1", "noise-size=" + shortestText(1.5F * (0.1F * float(billowSlope(3))))}));
-  EXPECT_NE(unset, bytes({"voxels=24", "noise=0.1", "noise-size=0.8"}));
-  EXPECT_NE(unset, bytes({"voxels=24", "noise=0.1", "seed=2"}));
+  const auto three = [&](const std::string& more) {
+    return bytes(more.empty() ? std::vector<std::string>{"voxels=24", "noise=0.1", "noise-octaves=3"}
+                              : std::vector<std::string>{"voxels=24", "noise=0.1", "noise-octaves=3", more});
+  };
+  const std::string unset = three("");
+  EXPECT_EQ(unset, three("noise-size=" + shortestText(1.5F * (0.1F * float(billowSlope(3))))));
+  EXPECT_NE(unset, three("noise-size=0.8"));
+  EXPECT_NE(unset, three("seed=2"));
   EXPECT_NE(unset, bytes({"voxels=24", "noise=0.1", "noise-octaves=2"}));
   EXPECT_EQ(bytes({"voxels=24"}), bytes({"voxels=24", "noise=0"})) << "no noise is what is not asked for";
   // Shares are of the longest side, 3.5.
   EXPECT_EQ(bytes({"voxels=24", "noise=12.5%", "noise-size=75%"}), bytes({"voxels=24", "noise=0.4375", "noise-size=2.625"}));
+}
+
+// Without a number of octaves there are as many, up to 3, as the voxels can show, and so no warning.
+TEST(Fields, TheOctavesOfNoiseUnlessGiven) {
+  const Cloud cloud = spheresCloud();
+  const auto octavesOf = [&](const std::string& voxels, const std::string& noise) {
+    Warnings warnings, none;
+    const auto bytes = [&](const std::vector<std::string>& texts, Warnings& told) {
+      return hashBytes(encodeVdb(levelSetOf(cloud, fieldSettings(texts, SourceKind::kSpheres), Lattice::kSurface, told)));
+    };
+    const std::string unset = bytes({voxels, noise}, none);
+    EXPECT_TRUE(none.empty()) << voxels << " " << noise;
+    for (int octaves = 1; octaves <= 3; ++octaves)
+      if (unset == bytes({voxels, noise, "noise-octaves=" + std::to_string(octaves)}, warnings)) return octaves;
+    return 0;
+  };
+  EXPECT_EQ(octavesOf("voxels=48", "noise=6%"), 3);  // 3.7 voxels wide
+  EXPECT_EQ(octavesOf("voxels=48", "noise=2.5%"), 2);
+  EXPECT_EQ(octavesOf("voxels=48", "noise=1.5%"), 1);
 }
 
 // Without a softness the base is as soft as the blend, and without a size its bumps are five times as wide as high.
