@@ -362,6 +362,6 @@ await testPage(folder, async page => {
     const mistaken = await draw({ steps: wrong });
     demand(near(mistaken.picture, truth, 2) < 0.99, `${kit}: with a mistake ${percent(near(mistaken.picture, truth, 2))}`);
     if (kit === 'painted' && !picture_file) await testSolids(page, programs, draw);
-    if (picture_file) writeFileSync(picture_file.replace('.', `_${kit}.`), await pictureOf(page, draw));
+    if (picture_file) writeFileSync(picture_file.replace(/\.\w+$/, ending => `_${kit}${ending}`), await pictureOf(page, draw));
   }
 });
