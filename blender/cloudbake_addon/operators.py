@@ -88,7 +88,8 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
             if context.scene.cloudbake.make_material:
                 self.light(context, cloud, things, baked.info)
         tell(self, self.words)
-        self.report({"INFO"}, f"baked {count} object{'s' if count != 1 else ''}")
+        who = settings.bakes_with(context).removeprefix("Bakes with ")
+        self.report({"INFO"}, f"baked {count} object{'s' if count != 1 else ''} with {who}")
         return {"FINISHED"}
 
     def light(self, context, cloud, things, info):
