@@ -1,5 +1,6 @@
 """Objects of the scene in and out: their triangles in scene space, and the lobes in their UV maps."""
 
+import collections
 import hashlib
 import json
 
@@ -150,8 +151,9 @@ def other_maps(mesh):
     return sum(layer.name not in MAPS for layer in mesh.uv_layers)
 
 
-def meshes_of(things, view_layer):
-    """The visible meshes among objects, and words about what is left out. Other shapes are refused."""
+def meshes_of(things, view_layer, to_bake):
+    """The visible meshes among objects, and words about what is left out. Other shapes are refused. Of an object whose modifiers were
+    applied to a copy, the object is baked, and the copy is what is baked already."""
     meshes, hidden = [], []
     applied = {source_of(thing) for thing in things} - {None}
     for thing in things:
@@ -166,7 +168,10 @@ def meshes_of(things, view_layer):
             raise BakeError(f"'{thing.name}' is not a mesh: convert it first (Object > Convert > Mesh)")
         else:
             meshes.append(thing)
-    meshes = [thing for thing in meshes if source_of(thing) not in meshes]
+    if to_bake:
+        meshes = [thing for thing in meshes if source_of(thing) not in meshes]
+    else:
+        meshes = list(dict.fromkeys(thing if get_info(thing.data) else copy_of(thing) or thing for thing in meshes))
     return meshes, [f"hidden objects are left out: {', '.join(hidden)}"] if hidden else []
 
 
@@ -241,6 +246,11 @@ def source_of(thing):
     return source if isinstance(source, bpy.types.Object) and source.name in bpy.data.objects else None
 
 
+def copy_of(thing):
+    """The object whose mesh is what this one's modifiers made; None without one."""
+    return next((other for other in bpy.data.objects if source_of(other) == thing), None)
+
+
 def evaluated_mesh(thing, depsgraph):
     """A new mesh with the vertices that modifiers and shape keys give, and all that the object's own mesh has."""
     mesh = bpy.data.meshes.new_from_object(thing.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph)
@@ -254,7 +264,7 @@ def applied_copy(thing, depsgraph):
     """An object beside another, which is hidden: a copy whose modifiers are applied, because they make vertices of their own, which the
     object's mesh cannot hold lobes for. A later bake renews it. Returns the copy and words."""
     mesh, names = evaluated_mesh(thing, depsgraph), [modifier.name for modifier in thing.modifiers if modifier.show_viewport]
-    copy = next((other for other in bpy.data.objects if source_of(other) == thing), None)
+    copy = copy_of(thing)
     if copy is None:
         copy = thing.copy()
         copy.name, copy.data, copy[SOURCE_KEY] = f"{thing.name} baked", mesh, thing
@@ -285,12 +295,12 @@ def store_cloud(cloud, baked, depsgraph):
     if baked.vertices is not None:
         return [new_object(cloud, baked, more)], words + [f"{cloud.name}: the options made a new mesh, which is an object of its own"]
     things = []
-    for part, thing, start in zip(cloud.parts, [part.thing(depsgraph) for part in cloud.parts], cloud.starts):
+    for number, (part, thing, start) in enumerate(zip(cloud.parts, [part.thing(depsgraph) for part in cloud.parts], cloud.starts)):
         source = part.state if part.shape.is_new else (get_info(thing.data) or {}).get("source")
         thing, told = applied_copy(thing, depsgraph) if part.shape.is_new else (thing, own_mesh(thing))
         lobes = local_lobes(baked.lobes[start:start + len(part.points)], part.linear)
         store_lobes(thing.data, lobes)
-        set_info(thing.data, baked.info, **more, **record_of(part), source=source)
+        set_info(thing.data, baked.info, **more, **record_of(part), part=number, source=source)
         things.append(thing)
         words += told
         if lobes[:, 3].mean() < KEPT_D:
@@ -338,15 +348,24 @@ def check_unchanged(thing, depsgraph):
     raise BakeError(f"'{thing.name}' has another shape than it was baked with: {cause}. Bake it again, or undo the change")
 
 
+def bakes_of(things):
+    """The objects of each bake. Duplicates of baked objects are bakes of their own, because they shade nothing."""
+    groups: dict[tuple, list] = {}
+    seen: collections.Counter = collections.Counter()
+    for thing in things:
+        info = get_info(thing.data)
+        part = info["bake"], info.get("part", thing.name)
+        groups.setdefault((info["bake"], seen[part]), []).append(thing)
+        seen[part] += 1
+    return list(groups.values())
+
+
 def check_places(things, depsgraph):
     """Refuses objects that were baked together and then moved apart: each has the shade of the others in its lobes."""
-    infos = [get_info(thing.data) for thing in things]
-    groups = {info["bake"] for info in infos if "matrix" in info}
-    for group in groups:
-        moves = [(thing.name, numpy.array(thing.evaluated_get(depsgraph).matrix_world, dtype=float) @ numpy.linalg.inv(info["matrix"]))
-                 for thing, info in zip(things, infos) if info["bake"] == group and "matrix" in info]
-        first, usual = moves[0]
-        for name, move in moves[1:]:
+    for group in bakes_of(things):
+        moves = [(thing.name, numpy.array(thing.evaluated_get(depsgraph).matrix_world, dtype=float) @ numpy.linalg.inv(matrix))
+                 for thing in group if (matrix := get_info(thing.data).get("matrix")) is not None]
+        for (first, usual), (name, move) in zip(moves, moves[1:]):
             if numpy.abs(move - usual).max() > 1e-4 * max(1.0, numpy.abs(usual).max()):
                 raise BakeError(f"'{first}' and '{name}' were baked together and shade each other, but one was moved since: bake them "
                                 "again, or move them back")

@@ -71,10 +71,11 @@ def import_asset(context, path, sun):
     if facts is not None:
         restore(context, document, facts, made, materials)
     depsgraph = context.evaluated_depsgraph_get()
-    for thing in clouds:
+    for number, thing in enumerate(clouds):
         part = bake.part_of(thing, depsgraph, False)
-        bake.set_info(thing.data, info, bake=f"{path} {info.get('input_hash', '')}", objects=len(clouds), source=None,
-                      **bake.record_of(part))
+        alone = bool(info.get("separate"))
+        name = f"{path} {info.get('input_hash', '')}{f' {number}' if alone else ''}"
+        bake.set_info(thing.data, info, bake=name, objects=1 if alone else len(clouds), part=number, source=None, **bake.record_of(part))
     for thing in clouds:
         for material in nodes.set_up(thing, f"Cloudbake {pathlib.Path(path).stem}", bake.constants_of(info)):
             nodes.follow_sun(material, sun)
@@ -152,7 +153,7 @@ def exported_info(things, depsgraph):
     if any(asset[key] != assets[0][key] for asset in assets for key in ("exponent", "bias", "extinction")):
         raise BakeError("these objects were baked apart, with other k, b and extinction: bake them together, or export each to its own "
                         "file")
-    bakes, maps = {info["bake"] for info in infos}, maps_of_file(things)
+    bakes, maps = bake.bakes_of(things), maps_of_file(things)
     asset: dict[str, Any] = {**assets[0], "uv_sets": [len(maps), len(maps) + 1]}
     if len(bakes) > 1:
         asset["separate"] = True

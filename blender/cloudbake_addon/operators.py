@@ -13,16 +13,16 @@ from .engine import BakeError
 from .settings import Progress
 
 
-def chosen_objects(context, scope):
+def chosen_objects(context, scope, to_bake=False):
     """The name of what is chosen, its meshes, and words about what is left out."""
     own = context.scene.cloudbake
     if scope == "COLLECTION":
         collection = own.collection or context.collection
-        return collection.name, *bake.meshes_of(collection.all_objects, context.view_layer)
+        return collection.name, *bake.meshes_of(collection.all_objects, context.view_layer, to_bake)
     active = context.view_layer.objects.active
     things = [active] if scope == "ACTIVE" and active else list(context.view_layer.objects.selected) if scope == "SELECTED" else []
     name = active.name if active in things else things[0].name if things else ""
-    return name, *bake.meshes_of(things, context.view_layer)
+    return name, *bake.meshes_of(things, context.view_layer, to_bake)
 
 
 def chosen_sun(context):
@@ -61,7 +61,7 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
     def prepare(self, context):
         """The clouds to bake. Nothing is changed before all of them are baked."""
         own, depsgraph = context.scene.cloudbake, context.evaluated_depsgraph_get()
-        name, things, self.words = chosen_objects(context, own.scope)
+        name, things, self.words = chosen_objects(context, own.scope, to_bake=True)
         bake.check_objects(things, depsgraph)
         groups = [(thing.name, [thing]) for thing in things] if own.each else [(name, things)]
         options = own.options()
@@ -88,7 +88,8 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
             if context.scene.cloudbake.make_material:
                 self.light(context, cloud, things, baked.info)
         tell(self, self.words)
-        self.report({"INFO"}, f"baked {count} object{'s' if count != 1 else ''}")
+        who = settings.bakes_with(context).removeprefix("Bakes with ")
+        self.report({"INFO"}, f"baked {count} object{'s' if count != 1 else ''} with {who}")
         return {"FINISHED"}
 
     def light(self, context, cloud, things, info):

@@ -841,6 +841,29 @@ def what_was_moved_since_the_bake(found):
 
 
 @scenario
+def duplicates_of_a_baked_object(found):
+    """They have its lobes, with a mesh of their own or a shared one, wherever they are moved to. They shade nothing."""
+    thing = lump("one", 51, 2)
+    select(thing)
+    bake()
+    own, shared = thing.copy(), thing.copy()
+    own.data = thing.data.copy()
+    own.location, shared.location = (4, 0, 0), (0, 4, 0)
+    for copy in (own, shared):
+        bpy.context.scene.collection.objects.link(copy)
+    bpy.context.view_layer.update()
+    path = export(found, "duplicates", [thing, own, shared])
+    assert read_glb(path)[0]["asset"]["extras"]["cloudbake"]["separate"] is True
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    prepare()
+    assert bpy.ops.cloudbake.import_asset(filepath=str(path)) == {"FINISHED"}
+    things = [thing for thing in bpy.context.scene.objects if thing.type == "MESH"]
+    things[0].location.z += 1
+    bpy.context.view_layer.update()
+    export(found, "duplicates_again", things)
+
+
+@scenario
 def applied_copy_of_a_changed_object(found):
     """The copy is not exported once the modifiers of its object are others."""
     thing = lump("divided", 46, 2)
@@ -852,6 +875,12 @@ def applied_copy_of_a_changed_object(found):
     refused("'divided' has changed since its bake: 'levels' of modifier 'Subdivision' was 1 and is 2", bpy.ops.cloudbake.export_asset,
             filepath=str(FOLDER / "no.glb"))
     thing.modifiers["Subdivision"].levels = 1
+    thing.hide_set(False)
+    select(thing)  # which is not baked itself
+    assert bpy.ops.cloudbake.material() == {"FINISHED"} and lobe_node(copy.material_slots[0].material)
+    assert bpy.ops.cloudbake.export_asset(filepath=str(FOLDER / "by_its_object.glb")) == {"FINISHED"}
+    found.file(FOLDER / "by_its_object.glb", [copy])
+    thing.hide_set(True)
     path = export(found, "applied_copy", [copy])
     assert [node["name"] for node in read_glb(path)[0]["nodes"]] == ["divided"]
     bpy.data.objects.remove(thing)
