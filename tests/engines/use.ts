@@ -52,7 +52,8 @@ export async function softly(scene: Scene, loader: GLTFLoader, material: CloudMa
   material.depthTexture = null;
   material.nearFade = [0.1, 0.5];
   material.lamps = [new PointLight('white', 3), new SpotLight()];
-  const levels = new CloudLevels(await Promise.all(['cloud.glb', 'cloud_lod1.glb'].map(file => loader.loadAsync(file))), { switchBand: 0.2 });
+  const files = await Promise.all(['cloud.glb', 'cloud_lod1.glb'].map(file => loader.loadAsync(file)));
+  const levels = new CloudLevels(files, { switchBand: 0.2 });
   levels.pictureHeight = 1080;
   scene.add(levels);
   const shadow = await CloudShadow.load('shadow.png');

@@ -1,11 +1,11 @@
 // Draws the pictures of the npm package in docs/pictures/ with Babylon.js: the painted look, and the soft look without passes after the
 // clouds beside an opaque surface.
-//   node scripts/docs/npm_pictures.mjs CLOUDBAKE SOURCE_FOLDER PAINTED.png SOFT.png
+//   node tests/engines/pictures.mjs CLOUDBAKE SOURCE_FOLDER PAINTED.png SOFT.png
 import { symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { testPage } from '../../tests/browser/browser.mjs';
-import { folder, load, openEngine, packages, run, serve, viewOf } from '../../tests/engines/pages.mjs';
+import { testPage } from '../browser/browser.mjs';
+import { folder, load, openEngine, packages, run, serve, viewOf } from './pages.mjs';
 
 const [painted, soft] = process.argv.slice(4), LARGE = [720, 405], SMALL = [360, 405];
 
