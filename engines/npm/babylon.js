@@ -22,6 +22,7 @@ import { Vector2, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
+import { forwardOf } from './babylon_view.js';
 import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, settingsOf, shadowValues, skyDefaults, softValues, sunDefaults,
   switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
@@ -157,12 +158,6 @@ void main() {
 }
 `;
 
-// The unit vector along which a camera looks, in the world.
-export function forwardOf(camera) {
-  const { m } = camera.getViewMatrix();
-  return new Vector3(m[2], m[6], m[10]).scale(camera.getScene().useRightHandedSystem ? -1 : 1);
-}
-
 const colorOf = rgb => Color3.FromArray(rgb);
 
 // Babylon.js takes a semicolon of a comment for the end of a line.
@@ -227,7 +222,8 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['flipV']} */ flipV;
   /** @type {Settings['ofVolume']} */ ofVolume;
   /** @type {Settings['depthTexture']} */ depthTexture;
-  painted = null;  // what PaintedClouds needs while it draws
+  switchPixels = 0;  // of a level of detail
+  /** @type {any} */ painted = null;  // what PaintedClouds needs while it draws
 
   constructor(name, scene, parameters = {}) {
     const { uvSets = DEFAULTS.uvSets, ...others } = parameters, names = uvSets.map(nameOfSet);
@@ -247,13 +243,13 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  get lamps() { return this.lights; }
+  get lamps() { return this.lampList; }
   set lamps(lights) {
     const { options } = this, names = Object.keys(LAMP_SETTERS), count = lights.length > 0 ? [`LAMPS ${lights.length}`] : [];
     options.defines = [...options.defines.filter(word => !word.startsWith('LAMPS')), ...count];
     options.uniforms = [...options.uniforms.filter(name => !name.startsWith('lamps[')),
       ...lights.flatMap((_, i) => names.map(name => `lamps[${i}].${name}`))];
-    this.lights = lights;
+    this.lampList = lights;
   }
 
   get soft() { return this.options.defines.includes('SOFT'); }
@@ -364,7 +360,8 @@ class CloudbakeExtension {
 // size on the screen where a camera draws them, as `cloudbake preview` does.
 export class CloudLevels {
   constructor(containers, scene, { switchBand = 0.3 } = {}) {
-    Object.assign(this, { scene, switchBand });
+    this.scene = scene;
+    this.switchBand = switchBand;
     this.levels = containers.map(({ meshes }) => meshes.filter(({ material }) => material instanceof CloudMaterial));
     for (const mesh of this.levels.flat()) {
       mesh.material.soft = true;
@@ -398,7 +395,9 @@ export class CloudLevels {
 // The shadow of a cloud that `cloudbake shadow` wrote, SHADOW.png, and SHADOW.json with its frame.
 export class CloudShadow {
   constructor(texture, frame, strength = 1) {
-    Object.assign(this, { texture, frame, shadowStrength: strength });
+    this.texture = texture;
+    this.frame = frame;
+    this.shadowStrength = strength;
     texture.wrapU = texture.wrapV = Constants.TEXTURE_CLAMP_ADDRESSMODE;
   }
 
@@ -431,7 +430,7 @@ class CloudShadowPlugin extends MaterialPluginBase {
   getSamplers(samplers) { samplers.push('cloud_shadow'); }
   getUniforms() { return { ubo: [], externalUniforms: SHADOW_UNIFORMS }; }
 
-  bindForSubMesh(buffer, scene, engine, subMesh) {
+  bindForSubMesh(_buffer, scene, _engine, subMesh) {
     const { effect } = subMesh, { frame, shadowStrength, texture } = this.shadow;
     for (const [name, value] of Object.entries(shadowValues(frame, shadowStrength))) effect.setFloat3(name, ...value);
     effect.setFloat3('shadow_mirror', scene.useRightHandedSystem ? 1 : -1, 1, 1);

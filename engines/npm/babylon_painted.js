@@ -7,7 +7,8 @@ import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTa
 import { ThinTexture } from '@babylonjs/core/Materials/Textures/thinTexture.js';
 import { Color3, Color4 } from '@babylonjs/core/Maths/math.color.js';
 import { PostProcess } from '@babylonjs/core/PostProcesses/postProcess.js';
-import { CloudMaterial, forwardOf } from './babylon.js';
+import { CloudMaterial } from './babylon.js';
+import { forwardOf } from './babylon_view.js';
 import { IMAGES, compositeValues, drawSamples, paint, paintedDefaults, sceneValues, sideOf } from './painted_chain.js';
 import { SCREEN, STEPS, compositeOf } from './painted_shaders.js';
 
@@ -66,18 +67,51 @@ function sizeOf(meshes) {
   return sides.reduce((sum, side) => sum + side, 0) / sides.length;
 }
 
+/** @typedef {import('./babylon_painted.d.ts').BabylonPaintedSettings} Settings */
+
 // Gives the clouds of a scene, the meshes with a CloudMaterial, the painted look in the pictures of a camera, which has perspective. It is
 // the first post-process of the camera.
 export class PaintedClouds {
+  /** @type {Settings['time']} */ time;
+  /** @type {Settings['resolution']} */ resolution;
+  /** @type {Settings['samplesPerSide']} */ samplesPerSide;
+  /** @type {Settings['halfLambert']} */ halfLambert;
+  /** @type {Settings['volumeGain']} */ volumeGain;
+  /** @type {Settings['depthSpread']} */ depthSpread;
+  /** @type {Settings['size']} */ size;
+  /** @type {Settings['nearDistance']} */ nearDistance;
+  /** @type {Settings['farDistance']} */ farDistance;
+  /** @type {Settings['softDistance']} */ softDistance;
+  /** @type {Settings['nearFade']} */ nearFade;
+  /** @type {Settings['farFade']} */ farFade;
+  /** @type {Settings['exposure']} */ exposure;
+  /** @type {Settings['fogDensity']} */ fogDensity;
+  /** @type {Settings['distanceFog']} */ distanceFog;
+  /** @type {Settings['fogColor']} */ fogColor;
+  /** @type {Settings['phase']} */ phase;
+  /** @type {Settings['softening']} */ softening;
+  /** @type {Settings['swirl']} */ swirl;
+  /** @type {Settings['erosion']} */ erosion;
+  /** @type {any} */ values;
+  /** @type {any} */ last = {};
+  /** @type {Record<string, any>} */ images = {};
+  samples = 4;
+  type = Constants.TEXTURETYPE_HALF_FLOAT;
+  made = '';
+  masks = new Map();
+  /** @type {number[]} */ size_of_picture = [1, 1];
+  /** @type {number[]} */ sides = [1, 1];
+
   /** @param {import('./babylon_painted.d.ts').BabylonPaintedParameters} settings */
   constructor(name, scene, camera, settings = {}) {
     const engine = scene.getEngine(), types = uniformsOf(COMPOSITE), { tone = 'cloudbake', ...others } = settings;
-    Object.assign(this, { name, scene, camera, engine, types, samples: 4, type: Constants.TEXTURETYPE_HALF_FLOAT },
-      paintedDefaults(others, rgb => new Color3(...rgb)));
+    this.name = name;
+    this.scene = scene;
+    this.camera = camera;
+    this.engine = engine;
+    Object.assign(this, paintedDefaults(others, rgb => new Color3(...rgb)));
     this.steps = Object.fromEntries(Object.entries(STEPS).map(([step, fragment]) => [step, stepOf(engine, step, fragment)]));
     this.screen = new EffectRenderer(engine);
-    this.images = {};
-    this.masks = new Map();
     this.post = new PostProcess(name, 'cloudbakeComposite', namesOf(types, false), namesOf(types, true), 1, null,
       Constants.TEXTURE_NEAREST_SAMPLINGMODE, engine, false, null, this.type);
     this.tone = tone;
@@ -139,7 +173,7 @@ export class PaintedClouds {
     if (made === this.made) return;
     this.disposeImages();
     Object.assign(this, { made, size_of_picture: size, sides });
-    const sizes = ([width, height]) => ({ width, height });
+    const sizes = (/** @type {number[]} */ [width, height]) => ({ width, height });
     const plain = { generateMipMaps: false, samplingMode: Constants.TEXTURE_NEAREST_SAMPLINGMODE, format: Constants.TEXTUREFORMAT_RGBA };
     const float = { ...plain, type: Constants.TEXTURETYPE_FLOAT, generateDepthBuffer: false };
     const imageOf = target => ({ target, texture: new ThinTexture(target.texture) });
@@ -190,7 +224,7 @@ export class PaintedClouds {
   // A vector of the scene in the axes of glTF, which a left-handed scene mirrors.
   inFile({ x, y, z }) { return [this.scene.useRightHandedSystem ? x : -x, y, z]; }
 
-  viewOf([mesh]) {
+  viewOf(/** @type {any[]} */ [mesh]) {
     const { camera } = this, { m } = camera.getViewMatrix(), axis = i => this.inFile({ x: m[i], y: m[4 + i], z: m[8 + i] });
     return { right: axis(0), up: axis(1), forward: this.inFile(forwardOf(camera)), eye: this.inFile(camera.globalPosition),
       tangent: 1 / camera.getProjectionMatrix().m[5], origin: this.inFile((mesh ?? camera).getWorldMatrix().getTranslation()) };

@@ -38,10 +38,12 @@ function driftAt(time, { speed, nearDrift, farDrift, farTiles }) {
 }
 
 // The settings, of groups what differs from these. `colorOf` makes a colour of the engine from three numbers.
-export function paintedDefaults({ phase, softening, swirl, erosion, ...others }, colorOf) {
+/** @param {any} settings */
+export function paintedDefaults(settings, colorOf) {
+  const { phase, softening, swirl, erosion, ...others } = settings;
   return {
     time: 0, resolution: 1, samplesPerSide: 2, halfLambert: @light_half_lambert@, volumeGain: @light_volume_gain@,
-    depthSpread: @chain_depth_spread@, size: null, nearDistance: @chain_near_distance@, farDistance: @chain_far_distance@ || null,
+    depthSpread: @chain_depth_spread@, size: null, nearDistance: @chain_near_distance@, farDistance: Math.max(@chain_far_distance@) || null,
     softDistance: 0, nearFade: [0, 0], farFade: [0, 0], exposure: @picture_exposure@, fogDensity: @fog_density@,
     distanceFog: @fog_per_unit@, fogColor: colorOf([@fog_color@]),
     phase: { ...GROUPS.phase, ...phase }, softening: { ...GROUPS.softening, ...softening },
@@ -54,7 +56,8 @@ export const sideOf = ({ resolution }, side) => Math.max(1, Math.round(resolutio
 
 // The uniforms that are the same in all steps, for images of a size. `view`: eye, right, up and forward in the axes of glTF, `tangent` of
 // half of the angle of view upwards, and where the noise begins.
-export function sceneValues({ erosion, nearDistance, farDistance, size, time, swirl }, { tangent, origin, ...view }, [width, height]) {
+export function sceneValues({ erosion, nearDistance, farDistance, size, time, swirl }, { tangent, origin, ...view },
+  /** @type {number[]} */ [width, height]) {
   return {
     ...view, picture: [width, height], per_pixel: 2 * tangent / height, mean_all: false,
     depth_range: [nearDistance, farDistance ?? nearDistance + FAR_SIZES * size], phases: phasesAt(time, swirl.speed),
@@ -101,7 +104,7 @@ export function paint({ depthSpread, softening, swirl, erosion }, height, fill) 
 }
 
 // The uniforms of the last step, for a picture of a size.
-export function compositeValues(settings, { tangent }, [width, height]) {
+export function compositeValues(settings, { tangent }, /** @type {number[]} */ [width, height]) {
   const { phase, exposure, fogDensity, distanceFog, fogColor, softDistance, farFade } = settings;
   return {
     drawn: 'drawn', picture: [width, height], per_pixel: 2 * tangent / height, exposure, fog_density: fogDensity, distance_fog: distanceFog,

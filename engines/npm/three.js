@@ -217,6 +217,7 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['flipV']} */ flipV;
   /** @type {Settings['ofVolume']} */ ofVolume;
   /** @type {Settings['harmonicExtinction']} */ harmonicExtinction;
+  /** @type {Settings['depthTexture']} */ depthTexture;
 
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
@@ -254,12 +255,12 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  get lamps() { return this.lights; }
+  get lamps() { return this.lampList; }
   set lamps(lights) {
     if (lights.length !== (this.defines.LAMPS ?? 0)) this.needsUpdate = true;
     if (lights.length > 0) this.defines.LAMPS = lights.length;
     else delete this.defines.LAMPS;
-    this.lights = lights;
+    this.lampList = lights;
   }
 
   get soft() { return 'SOFT' in this.defines; }

@@ -41,8 +41,31 @@ function sizeOf(meshes) {
 const stepOf = (name, fragment) => new RawShaderMaterial({ name, glslVersion: GLSL3, depthTest: false, depthWrite: false,
   vertexShader: `precision highp float;\n${SCREEN}`, fragmentShader: `precision highp float;\nprecision highp int;\n${fragment}` });
 
+/** @typedef {import('./three_painted.d.ts').ThreePaintedSettings} Settings */
+
 // Draws a scene whose clouds, the meshes with a CloudMaterial, get the painted look. The camera has perspective.
 export class PaintedClouds extends Pass {
+  /** @type {Settings['time']} */ time;
+  /** @type {Settings['resolution']} */ resolution;
+  /** @type {Settings['samplesPerSide']} */ samplesPerSide;
+  /** @type {Settings['halfLambert']} */ halfLambert;
+  /** @type {Settings['volumeGain']} */ volumeGain;
+  /** @type {Settings['depthSpread']} */ depthSpread;
+  /** @type {Settings['size']} */ size;
+  /** @type {Settings['nearDistance']} */ nearDistance;
+  /** @type {Settings['farDistance']} */ farDistance;
+  /** @type {Settings['softDistance']} */ softDistance;
+  /** @type {Settings['nearFade']} */ nearFade;
+  /** @type {Settings['farFade']} */ farFade;
+  /** @type {Settings['exposure']} */ exposure;
+  /** @type {Settings['fogDensity']} */ fogDensity;
+  /** @type {Settings['distanceFog']} */ distanceFog;
+  /** @type {Settings['fogColor']} */ fogColor;
+  /** @type {Settings['phase']} */ phase;
+  /** @type {Settings['softening']} */ softening;
+  /** @type {Settings['swirl']} */ swirl;
+  /** @type {Settings['erosion']} */ erosion;
+
   /** @param {import('./three_painted.d.ts').ThreePaintedParameters} settings */
   constructor(scene, camera, settings = {}) {
     super();
@@ -79,9 +102,9 @@ export class PaintedClouds extends Pass {
     const to = this.renderToScreen ? null : target, { x, y } = renderer.getDrawingBufferSize(new Vector2()), meshes = this.findClouds();
     const { autoClear } = renderer, color = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
     this.renderer = renderer;
-    const size = [to?.width ?? x, to?.height ?? y], sides = size.map(side => sideOf(this, side));
-    this.behind.setSize(...size);
-    for (const image of Object.values(this.images)) image.setSize(...sides);
+    const size = [to?.width ?? x, to?.height ?? y], sides = size.map(side => sideOf(this, side)), [across, down] = sides;
+    this.behind.setSize(size[0], size[1]);
+    for (const image of Object.values(this.images)) image.setSize(across, down);
     renderer.autoClear = true;
     this.drawBehind(meshes);
     renderer.setClearColor(0, 0);

@@ -18,9 +18,16 @@ import { Scene } from '@babylonjs/core/scene.js';
 import { CloudLevels, CloudMaterial, CloudShadow } from 'cloudbake-materials/babylon';
 import { PaintedClouds } from 'cloudbake-materials/babylon/painted';
 import { changesOf } from './changes.mjs';
-import { canvasOf, colorOf, engineOf } from './babylon_page.mjs';
+import { canvasOf, colorOf, draw, engineOf } from './babylon_page.mjs';
 
 export { describe, draw, load } from './babylon_page.mjs';
+
+// The 8 bits of draw(), by the curve of `preview`.
+export async function drawInBits(subject, view) {
+  const film = x => Math.min(1, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14));
+  const bits = x => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
+  return Array.from(await draw(subject, view), x => bits(film(x)));
+}
 
 function lightsOf(lamps, scene) {
   return lamps.map(({ place, color, strength, range, axis, angles, radius }) => {

@@ -21,12 +21,12 @@ function paintedFor({ scene }, eye, { colors }, { exact = true, ...settings } = 
 }
 
 // Renders until everything is compiled, and once more.
-async function drawReady(scene, painted) {
+async function drawReady(scene, look) {
   await scene.whenReadyAsync();
   do {
     scene.render();
     await new Promise(done => requestAnimationFrame(done));
-  } while (!painted.isReady());
+  } while (!look.isReady());
 }
 
 // The settings that a look has without any, by the names of painted.mjs.

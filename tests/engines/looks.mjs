@@ -6,7 +6,7 @@ import { join } from 'node:path';
 
 import { SIZE, demand, pngValues, testPage } from '../browser/browser.mjs';
 import { chunksOf } from '../browser/glb.mjs';
-import { folder, load, openEngine, packages, percent, run, serve, source, viewOf } from './pages.mjs';
+import { folder, load, openEngine, packages, percent, run, serve, viewOf } from './pages.mjs';
 
 const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0), minus = (a, b) => a.map((x, i) => x - b[i]);
 const scaled = (a, s) => a.map(x => x * s), unit = a => scaled(a, 1 / Math.hypot(...a));

@@ -1,14 +1,18 @@
 // A program that uses all types of the package; web.mjs compiles it.
-import { Color, DirectionalLight, DoubleSide, InstancedMesh, Mesh, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import { Color, DirectionalLight, DoubleSide, InstancedMesh, Mesh, MeshStandardMaterial, PerspectiveCamera, PointLight, Scene, SpotLight,
+  Vector3, WebGLRenderer } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
-import { CloudMaterial, CloudSky, CloudbakeLoaderPlugin, SkyMaterial } from 'cloudbake-materials/three';
+import { CloudLevels, CloudMaterial, CloudShadow, CloudSky, CloudbakeLoaderPlugin, SkyMaterial } from 'cloudbake-materials/three';
 import { PaintedClouds } from 'cloudbake-materials/three/painted';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { DirectionalLight as BabylonLight } from '@babylonjs/core/Lights/directionalLight.js';
 import { LoadAssetContainerAsync } from '@babylonjs/core/Loading/sceneLoader.js';
 import type { Scene as BabylonScene } from '@babylonjs/core/scene.js';
+import type { Camera } from '@babylonjs/core/Cameras/camera.js';
+import type { StandardMaterial } from '@babylonjs/core/Materials/standardMaterial.js';
+import { PaintedClouds as BabylonPainted } from 'cloudbake-materials/babylon/painted';
 import * as babylon from 'cloudbake-materials/babylon';
 
 export async function inThree(scene: Scene, light: DirectionalLight): Promise<CloudMaterial> {
@@ -39,6 +43,36 @@ export function painted(renderer: WebGLRenderer, scene: Scene, camera: Perspecti
   clouds.render(renderer, clouds.behind);
   clouds.dispose();
   return clouds;
+}
+
+export async function softly(scene: Scene, loader: GLTFLoader, material: CloudMaterial): Promise<MeshStandardMaterial> {
+  Object.assign(material, { rimStart: 0, rimEnd: 0.4, rimFrequency: 3, side: DoubleSide });
+  material.rimScroll = [0.1, 0, 0];
+  material.softDistance = 0.2;
+  material.depthTexture = null;
+  material.nearFade = [0.1, 0.5];
+  material.lamps = [new PointLight('white', 3), new SpotLight()];
+  const files = await Promise.all(['cloud.glb', 'cloud_lod1.glb'].map(file => loader.loadAsync(file)));
+  const levels = new CloudLevels(files, { switchBand: 0.2 });
+  levels.pictureHeight = 1080;
+  scene.add(levels);
+  const shadow = await CloudShadow.load('shadow.png');
+  shadow.shadowStrength = 0.8;
+  shadow.update();
+  return shadow.darken(new MeshStandardMaterial());
+}
+
+export async function paintedInBabylon(scene: BabylonScene, camera: Camera, ground: StandardMaterial): Promise<BabylonPainted> {
+  const painted = new BabylonPainted('painted', scene, camera, { resolution: 0.5, swirl: { seed: 1 }, nearFade: [0.1, 1], tone: 'linear' });
+  painted.farFade = [50, 90];
+  painted.fogColor = new Color3(1, 1, 1);
+  if (!painted.isReady()) painted.post.samples = 1;
+  const levels = new babylon.CloudLevels([await LoadAssetContainerAsync('cloud.glb', scene)], scene);
+  levels.switchBand = 0.2;
+  (await babylon.CloudShadow.load('shadow.png', scene, 0.5)).darken(ground);
+  levels.dispose();
+  painted.dispose();
+  return painted;
 }
 
 export async function inBabylon(scene: BabylonScene): Promise<babylon.CloudMaterial | null> {

@@ -346,10 +346,10 @@ function types() {
   demand(wrong.includes("'string' is not assignable to type 'number'"), 'control: a word as extinction is an error');
 }
 
-// The pages of the README by their names: the examples, and that of three.js with the lines of "The painted look".
+// The pages of the README by their names: the examples, also with the lines for the painted look.
 function pagesOf(readme) {
   const blocks = language => [...readme.matchAll(new RegExp(`^\`\`\`${language}\\n(.*?)^\`\`\``, 'gms'))].map(([, text]) => text);
-  const [three, babylon] = blocks('html'), [setup, draw, composer] = blocks('js');
+  const [three, babylon, mapped] = blocks('html'), [setup, draw, composer, post] = blocks('js');
   const replaced = (text, [from, to]) => {
     demand(text.includes(from), `a page of the README contains ${from.trim()}`);
     return text.replaceAll(from, to);
@@ -358,7 +358,11 @@ function pagesOf(readme) {
     ['  renderer.render(scene, camera);\n', draw]].reduce(replaced, three);
   const composed = [['renderer.setAnimationLoop', `${composer}\nrenderer.setAnimationLoop`],
     ['painted.render(renderer)', 'composer.setSize(innerWidth, innerHeight);\ncomposer.render()']].reduce(replaced, painted);
-  return { 'three.js': three, 'three.js, painted': painted, 'three.js, painted, with an EffectComposer': composed, 'Babylon.js': babylon };
+  const posted = [['  "cloudbake-materials/babylon":', `${mapped}  "cloudbake-materials/babylon":`],
+    ['{ sunLight: sun })', "{ sunLight: sun, tone: 'linear' })"], ["addEventListener('resize'", `${post}\naddEventListener('resize'`]]
+    .reduce(replaced, babylon);
+  return { 'three.js': three, 'three.js, painted': painted, 'three.js, painted, with an EffectComposer': composed, 'Babylon.js': babylon,
+    'Babylon.js, painted': posted };
 }
 
 async function examples(page, address) {
