@@ -113,7 +113,7 @@ func _process(delta):
 	var picture = Vector2(get_viewport().size)
 	var small = (picture * resolution).ceil()
 	for pass_name in _passes:
-		_passes[pass_name].size = small * (samples_per_side if pass_name == "clouds" else 1)
+		_passes[pass_name].size = Vector2i(small) * (samples_per_side if pass_name == "clouds" else 1)
 	_follow(camera)
 	_set_values(camera, picture, small)
 
@@ -127,6 +127,7 @@ func _viewport(pass_name):
 	viewport.name = pass_name
 	viewport.use_hdr_2d = true    # else it has 8 bits
 	viewport.transparent_bg = true
+	viewport.disable_3d = pass_name != "clouds"
 	viewport.gui_disable_input = true
 	viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	# Godot draws viewports before those that they are in: each step has the one before it.

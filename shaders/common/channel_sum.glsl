@@ -19,8 +19,7 @@ vec4 channelMean(ChannelSum sum) {
   return vec4(sum.counted.xy / sum.counted.w, sum.covered.x / sum.covered.y, sum.counted.z / sum.counted.w);
 }
 
-// The lower left and the upper right of the four pixels about a place, from the corner where the image begins, and the weight of the
-// latter.
+// The lower left and the upper right of the four pixels about a place, from the corner where the image begins, and the latter's weight.
 void findCorners(ivec2 size, vec2 place, out ivec2 low, out ivec2 high, out vec2 part) {
   vec2 corner = clamp(place - 0.5, vec2(0.0), vec2(size - 1));
   low = ivec2(corner);

@@ -3,4 +3,4 @@ shader_type canvas_item;
 render_mode unshaded, blend_disabled;
 
 #include "channel_sum.glsl"
-#include "resolve.frag.glsl"
+#include "godot_resolve.gdshaderinc"
