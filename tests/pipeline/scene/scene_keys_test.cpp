@@ -100,7 +100,8 @@ TEST(SceneKeys, EachIsRead) {
   for (const std::string published : {"", "as_published = true\n"}) {
     const auto plain = valuesOf(readWhole(wholeText("", "", published)));
     EXPECT_GT(plain.size(), 180U);
-    for (const auto& [table, name, value, low, high, help, without_control] : describeKeys(readWhole(wholeText("", "", published)))) {
+    for (const auto& [table, name, value, is_whole, low, high, help, without_control] :
+         describeKeys(readWhole(wholeText("", "", published)))) {
       std::string wrong;
       bool is_read = false;
       for (const auto& [factor, shift] : {std::pair{1.03, 0.01}, std::pair{0.97, 0.0}, std::pair{1.0, 1.0}}) {
