@@ -24,7 +24,7 @@ struct ShadowPicture {
   std::vector<float> transmittance;
 };
 
-/// Draws it from the same field as the shadows of scenes, with cells of about the size of the pixels. `size` ≥ 8; the extinction is that of
+/// Draws it from the same field as the shadows of scenes, with cells of about the size of the pixels. `size` ≥ 6; the extinction is that of
 /// the asset if none is given. Throws InputError, without a file, if the mesh encloses nothing.
 ShadowPicture drawShadow(const BakedMesh& mesh, Vec3 to_sun, int size, std::optional<float> extinction,
                          uint64_t memory_limit = kMemoryLimit);
