@@ -71,7 +71,7 @@ uniform vec2 painted_range;  // of depth, while PaintedClouds draws
 void main() {
   #include <logdepthbuf_fragment>
   if (painted_range.y > painted_range.x) {
-    gl_FragColor = channelsOf(cloud_light, 1.0, -dot(cloud_view, vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2])), painted_range);
+    gl_FragColor = channelsOf(cloud_light, -dot(cloud_view, vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2])), painted_range);
     return;
   }
   gl_FragColor = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
