@@ -5,9 +5,7 @@
 #include "app/tell.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
-#include "pipeline/picture/picture.h"
 #include "pipeline/picture/shadow_picture.h"
-#include "preview/camera.h"
 
 namespace cloudbake {
 
@@ -21,10 +19,7 @@ ExitCode runShadow(const CommandLine& line) {
   report.info = mesh.info;
   enforceStrict(settings.run.strict, report);
   watch.lap(report.seconds, "read");
-  const Vec3 to_sun = directionFromAngles(settings.picture.sun_azimuth_degrees, settings.picture.sun_elevation_degrees);
-  const ShadowPicture picture = namingFile(report.input, [&] {
-    return drawShadow(mesh, to_sun, settings.shadow.size, settings.shadow.extinction, settings.picture.memory_limit);
-  });
+  const ShadowPicture picture = namingFile(report.input, [&] { return drawShadow(mesh, settings); });
   watch.lap(report.seconds, "draw");
   const ShadowFiles files = encodeShadow(picture);
   writeFileAtomically(shadowFrameFile(settings.output.file), files.frame);

@@ -84,7 +84,7 @@ function composite({ gpu, view, look, scene, shown }, channels) {
     phase: [clamp(share * shine, 0, 1), ...phase], channels, drawn: 'drawn', background: 'background',
     has_lamps: shown.length > 1, lamps_red_green: (shown[1] ?? '') + channels, lamps_blue: (shown[2] ?? '') + channels,
   };
-  const files = ['light', 'sky', 'view', 'sky_uniforms', 'channel_sum', 'composite'];
+  const files = ['light', 'sky', 'view', 'sky_uniforms', 'channel_sum', 'composite', 'composite_lamps'];
   if (!scene.layers) {
     gpu.fill([], gpu.program('composite.frag', ['tone', ...files]), values);
     return;

@@ -2,7 +2,8 @@
 
 /** The place and the brightness of lightning at a time. @param {Lamp} lamp @param {number} now */
 function flashAt({ flashes, every, decay, dark }, now) {
-  const stretch = every ? Math.floor(now / every) : 0, { place, strokes } = flashes[stretch % flashes.length], since = now - stretch * every;
+  const stretch = every ? Math.floor(now / every) : 0, since = now - stretch * every;
+  const { place, strokes } = flashes[stretch % flashes.length];
   const sum = strokes.reduce((all, [start, strength]) => all + (since >= start ? strength * Math.exp((start - since) / decay) : 0), 0);
   return { place, brightness: sum < dark ? 0 : sum };
 }

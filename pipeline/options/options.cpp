@@ -843,7 +843,7 @@ const Option kOptions[] = {
      .help = "azimuth (0 = behind the viewer, 90 = right, as in preview) and elevation of the light, degrees"},
     {.name = "size",
      .unit = "N",
-     .value = numberAt<&S::shadow, &ShadowPictureSettings::size>(8, 2048),
+     .value = numberAt<&S::shadow, &ShadowPictureSettings::size>(6, 2048),
      .group = kOfPicture,
      .commands = kShadow,
      .common = kShadow,

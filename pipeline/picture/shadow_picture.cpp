@@ -11,6 +11,7 @@
 #include "io/gltf/asset_info.h"
 #include "io/image/image.h"
 #include "pipeline/picture/scene_shadows.h"
+#include "preview/camera.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 
 namespace cloudbake {
@@ -68,6 +69,11 @@ ShadowPicture drawShadow(const BakedMesh& mesh, Vec3 to_sun, int size, std::opti
     }
   });
   return picture;
+}
+
+ShadowPicture drawShadow(const BakedMesh& mesh, const Settings& settings) {
+  const Vec3 to_sun = directionFromAngles(settings.picture.sun_azimuth_degrees, settings.picture.sun_elevation_degrees);
+  return drawShadow(mesh, to_sun, settings.shadow.size, settings.shadow.extinction, settings.picture.memory_limit);
 }
 
 ShadowFiles encodeShadow(const ShadowPicture& picture) {

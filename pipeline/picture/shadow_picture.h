@@ -9,6 +9,7 @@
 
 #include "core/memory_budget.h"
 #include "core/types.h"
+#include "pipeline/options/settings.h"
 #include "preview/mesh_clouds/shadow_frame.h"
 
 namespace cloudbake {
@@ -23,10 +24,13 @@ struct ShadowPicture {
   std::vector<float> transmittance;
 };
 
-/// Draws it from the same field as the shadows of scenes, with cells of about the size of the pixels. `size` ≥ 8; the extinction is that of the
-/// asset if none is given. Throws InputError, without a file, if the mesh encloses nothing.
+/// Draws it from the same field as the shadows of scenes, with cells of about the size of the pixels. `size` ≥ 6; the extinction is that of
+/// the asset if none is given. Throws InputError, without a file, if the mesh encloses nothing.
 ShadowPicture drawShadow(const BakedMesh& mesh, Vec3 to_sun, int size, std::optional<float> extinction,
                          uint64_t memory_limit = kMemoryLimit);
+
+/// The same of the light and with the size that settings give.
+ShadowPicture drawShadow(const BakedMesh& mesh, const Settings& settings);
 
 /// A grey PNG with 8 bits per pixel, whose values are linear, and its frame as JSON, schema "cloudbake-shadow-1", which the PNG has as the
 /// text of this keyword too. The values are 255 times the transmittance.

@@ -6,8 +6,6 @@ uniform vec3 fog_color;
 uniform vec2 fog_scatter;  // strength and exponent of the light that fog scatters around the sun
 uniform vec2 depth_range;
 uniform vec3 phase;  // share, asymmetry, limit
-uniform highp sampler2D lamps_red_green, lamps_blue;  // channels with the light of lamps in place of that of sun and sky
-uniform bool has_lamps;
 
 // The channels may be smaller than the picture.
 vec4 channelsAt(highp sampler2D image, ivec2 at) {
@@ -31,13 +29,14 @@ vec3 fogColor(vec3 view) {
 }
 
 // Without fog.
-vec3 litCloud(vec4 p, vec3 view, ivec2 at) {
+vec3 litCloud(vec4 p, vec3 view) {
   float factor = phaseFactor(view, to_sun, phase.x, phase.y, phase.z);
-  vec3 color = cloudColor(p.x, p.y, sun_color * factor, ambient_sky, ambient_ground);
-  if (has_lamps) {
-    color += vec3(channelsAt(lamps_red_green, at).xy, channelsAt(lamps_blue, at).x);
-  }
-  return color;
+  return cloudColor(p.x, p.y, sun_color * factor, ambient_sky, ambient_ground);
+}
+
+// What of the light of a cloud comes through the fog before it.
+float throughFog(vec4 p, vec3 view, ivec2 at) {
+  return exp(-(distance_fog > 0.0 ? distance_fog * distanceOf(p, at) / dot(view, forward) : fog_density * p.w));
 }
 
 // A colour behind the clouds of a pixel, whose channels are p.
@@ -46,8 +45,7 @@ vec3 behindClouds(vec3 color, vec4 p, ivec2 at) {
     return color;
   }
   vec3 view = viewDirection(vec2(at) + 0.5);
-  float fog = distance_fog > 0.0 ? distance_fog * distanceOf(p, at) / dot(view, forward) : fog_density * p.w;
-  return mix(color, mix(litCloud(p, view, at), fogColor(view), 1.0 - exp(-fog)), p.z);
+  return mix(color, mix(litCloud(p, view), fogColor(view), 1.0 - throughFog(p, view, at)), p.z);
 }
 
 vec3 withClouds(vec3 color, ivec2 at) {

@@ -26,7 +26,7 @@ std::string wholeText(const std::string& table, const std::string& lines, const 
       {"sky.stars", "[sky.stars]\n"},
       {"sky.aurora", "[sky.aurora]\n"},
       {"light", "[light]\n"},
-      {"lamp", "[[lamp]]\nlook_at = [0, -1, 0]\n"},
+      {"lamp", "[[lamp]]\n"},
       {"lightning", "[[lightning]]\n"},
       {"fog", "[fog]\n"},
       {"chain", "[chain]\n" + published},
@@ -50,8 +50,11 @@ std::string wholeText(const std::string& table, const std::string& lines, const 
       {"volume", "[volume]\n"},
   };
   // Without these, the keys that they belong to are left out.
-  const std::tuple<std::string, std::string, const char*> needed[]{
-      {"sun", "hour", "12"}, {"grade", "vignette", "0.5"}, {"grade", "contrast", "0.4"}, {"volume", "octaves", "0"}};
+  const std::tuple<std::string, std::string, const char*> needed[]{{"sun", "hour", "12"},
+                                                                   {"grade", "vignette", "0.5"},
+                                                                   {"grade", "contrast", "0.4"},
+                                                                   {"volume", "octaves", "0"},
+                                                                   {"lamp", "look_at", "[0, -1, 0]"}};
   std::string text;
   bool found = table.empty();
   for (const auto& [name, head] : tables) {
