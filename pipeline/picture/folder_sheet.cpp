@@ -29,10 +29,11 @@ std::string kindOf(const fs::path& file) {
   return isBakedAsset(file, readFileBytes(file)) ? "baked asset" : "sculpt";
 }
 
-// The text of an error without the path of its file, which the title of the panel has.
+// The text of an error without the folder of its file, which the title of the panel has, and without its name where no line follows.
 std::string causeOf(const FolderPanel& panel, const fs::path& file) {
-  const std::string path = file.string() + ": ";
-  return panel.error.starts_with(path) ? panel.error.substr(path.size()) : panel.error;
+  if (!panel.error.starts_with(file.string())) return panel.error;
+  const std::string rest = panel.error.substr(file.string().size());
+  return rest.starts_with(": ") ? rest.substr(2) : file.filename().string() + rest;
 }
 
 // A dark picture that has the cause as text.

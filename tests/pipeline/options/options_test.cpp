@@ -124,8 +124,8 @@ TEST(Options, FormsAreWhatIsTaken) {
 // fields_test hold those to what they say.
 TEST(Options, GivingTheDefaultChangesNothing) {
   const std::set<std::string> words{
-      "ray-length", "bake-voxels",    "exponent", "bias",    "extinction", "sun-arc",     "uv-set",        "noise-size",    "units",
-      "up",         "truth-vertices", "memory",   "threads", "iso",        "scene-index", "base-softness", "base-bump-size"};
+      "ray-length",     "bake-voxels", "exponent", "bias", "extinction",  "sun-arc",       "uv-set",         "noise-size",   "units", "up",
+      "truth-vertices", "memory",      "threads",  "iso",  "scene-index", "base-softness", "base-bump-size", "noise-octaves"};
   // Free text, a length of which 0 means the same as none, and what the option is given without its value.
   const std::set<std::string> elsewhere{"grid",  "name",    "depfile-target", "noise",          "base-bumps",
                                         "serve", "octaves", "phase",          "view-extinction"};

@@ -1,8 +1,11 @@
 #include "pipeline/options/presets.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "io/file/write_file.h"
+#include "pipeline/fields/fields.h"
 #include "pipeline/sources/grown.h"
 #include "tests/folders.h"
 #include "tests/pipeline/pipeline_helpers.h"
@@ -52,6 +55,25 @@ TEST(Presets, AllGrow) {
     ASSERT_TRUE(report.growth);
     EXPECT_EQ(report.growth->parts == 1 || report.growth->connected, !contains(preset.toml, "connect = false")) << preset.name;
   }
+}
+
+// No sphere is under 1.5 voxels of the lattice that its preset asks for, which would be a warning in every such seed.
+TEST(Presets, SpheresOfAllSeedsAreLargeEnoughForTheVoxels) {
+  for (const Preset& preset : presets())
+    for (int seed = 1; seed <= 12; ++seed) {
+      GrownSource source = readGrownSource(sourceOf(SourceKind::kPreset, preset.name));
+      std::vector<Given> given = source.given;
+      given.push_back(option("seed=" + std::to_string(seed), kGrow));
+      given.push_back(option("dry-run", kGrow));
+      const Settings settings = resolve(sourceOf(SourceKind::kPreset, preset.name), given);
+      BakeReport report;
+      Stopwatch watch;
+      const Cloud cloud = growCloud(std::move(source), settings, std::nullopt, report, watch);
+      float least = INFINITY;
+      for (const Sphere& sphere : cloud.spheres) least = std::min(least, sphere.radius);
+      const float voxel = boundingBox(cloud.spheres).longestSide() / float(settings.field.voxels);
+      EXPECT_GT(least, 1.5F * voxel) << preset.name << ", seed " << seed;
+    }
 }
 
 }  // namespace

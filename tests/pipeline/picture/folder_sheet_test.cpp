@@ -33,7 +33,7 @@ TEST(FolderSheet, APanelForEachFile) {
   EXPECT_EQ(drawn.panels[0].code, 0);
   EXPECT_EQ(drawn.panels[0].vertices, ballMesh(1, 2).positions.size());
   EXPECT_EQ(drawn.panels[1].code, int(ExitCode::kInput));
-  EXPECT_NE(drawn.panels[1].error.find("broken.ply: "), std::string::npos);
+  EXPECT_NE(drawn.panels[1].error.find("broken.ply:"), std::string::npos);
   EXPECT_EQ(drawn.failures(), 1U);
   EXPECT_GE(drawn.sheet.width, 2 * 48);
   EXPECT_EQ(folderJson(drawn)[1]["code"], int(ExitCode::kInput));
