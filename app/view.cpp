@@ -84,8 +84,9 @@ LiveScenes readLiveScenes(const CommandLine& line, BakeReport& report) {
     Settings settings = settingsOf(one, one.given);
     settings.picture.is_live = true;
     if (std::filesystem::is_directory(input)) {
-      report.input += (report.input.empty() ? "" : ", ") + input.string();
+      const std::string shown = report.input + (report.input.empty() ? "" : ", ") + input.string();
       addFolder(input, settings, one.given, live, report);
+      report.input = shown;  // and not the file that was baked last
       for (size_t i = paths.size(); i < live.scenes.size(); ++i)
         paths.push_back((input / live.scenes[i].scene["name"].get<std::string>()).generic_string());
       continue;

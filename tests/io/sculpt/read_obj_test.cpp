@@ -191,7 +191,7 @@ TEST(ReadObj, LibrariesAndTexturesOutsideAreRefusedUnlessAllowed) {
   EXPECT_NE(refused.text(WarningKind::kMaterialIgnored).find("--allow-outside"), std::string::npos);
   EXPECT_NE(refused.text(WarningKind::kImageNotEmbedded).find("--allow-outside"), std::string::npos);
   EXPECT_TRUE(refused.sculpt.images.empty());
-  ReadSettings allow{1.0, UpAxis::kY, true, {}};
+  ReadSettings allow{.metres_per_unit = 1.0, .up_axis = UpAxis::kY, .allow_outside = true};
   const Read allowed = readWithWarnings(file, allow);
   EXPECT_EQ(allowed.sculpt.materials[0].base_color[0], 0);
   EXPECT_EQ(allowed.sculpt.images.size(), 1U) << "one file, named relative to each library";
