@@ -399,6 +399,7 @@ export class CloudShadow {
     this.frame = frame;
     this.shadowStrength = strength;
     texture.wrapU = texture.wrapV = Constants.TEXTURE_CLAMP_ADDRESSMODE;
+    texture.anisotropicFilteringLevel = 1;  // which needs levels of the texture to be right
   }
 
   static async load(picture, scene, strength = 1) {

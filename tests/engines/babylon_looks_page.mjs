@@ -89,7 +89,7 @@ export async function drawFlat({ size, fov, triangle: { places, normals, lobe },
 export async function shadowAt({ picture, strength, places, sun, physical }) {
   const ratio = [];
   for (const shaded of [false, true]) {
-    const size = [64, 64], { scene, eye } = sceneOf(size, 60), floor = CreateGround('floor', { width: 50, height: 50 }, scene);
+    const size = [65, 65], { scene, eye } = sceneOf(size, 60), floor = CreateGround('floor', { width: 50, height: 50 }, scene);
     const light = new DirectionalLight('sun', new Vector3(...sun).scale(-1), scene), Material = physical ? PBRMaterial : StandardMaterial;
     const look = physical ? { metallic: 0, roughness: 1 } : { specularColor: Color3.Black() };
     floor.material = Object.assign(new Material('floor', scene), look);
@@ -98,9 +98,9 @@ export async function shadowAt({ picture, strength, places, sun, physical }) {
     const values = [];
     for (const [x, y, z] of places) {
       floor.position.y = y;
-      eye.position.set(x, y + 8, z);
-      eye.setTarget(new Vector3(x, y, z - 1e-4));
-      values.push((await valuesOf(scene, eye, size))[4 * (64 * 31 + 32)]);
+      eye.position.set(x, y + 6, z + 6);
+      eye.setTarget(new Vector3(x, y, z));
+      values.push((await valuesOf(scene, eye, size))[4 * (65 * 32 + 32)]);
     }
     scene.dispose();
     ratio.push(values);

@@ -157,13 +157,29 @@ async function levels(page, engine) {
 
 // --- The shadow on the ground ---
 
+// A place of a frame: from the lower left of the picture, 0 to 1, and along the way to the sun.
+const inFrame = ({ origin, right, up, to_sun, width, height }, x, y, depth) => [0, 1, 2].map(i =>
+  origin[i] + right[i] * width * (x - 0.5) + up[i] * height * (y - 0.5) + to_sun[i] * depth);
+
+// The picture that `cloudbake shadow` draws of the cloud: a floor below it has the values of its pixels.
+async function shadowOfTheCloud(page, engine) {
+  const side = 32, pixels = [[15, 15], [12, 20], [20, 12], [16, 24], [0, 0]];
+  run('shadow', 'cloud.glb', '--sun', '120,50', '--size', String(side), '-o', 'cast.png');
+  const frame = JSON.parse(readFileSync(join(folder, 'cast.json'), 'utf8')), values = await pngValues(page, join(folder, 'cast.png'));
+  const wanted = pixels.map(([x, y]) => values[3 * (y * side + x)] / 255);
+  const places = pixels.map(([x, y]) => inFrame(frame, (x + 0.5) / side, 1 - (y + 0.5) / side, frame.bottom - 1));
+  const found = await ask(page, 'shadowAt', { picture: 'cast.png', strength: 1, sun: frame.to_sun, places });
+  const off = Math.max(...found.map((share, i) => Math.abs(share - wanted[i])));
+  demand(off < 0.01 && Math.min(...wanted) < 0.3 && Math.max(...wanted) === 1,
+    `${engine}: the shadow of a grown cloud darkens a floor to ${found.map(share => share.toFixed(3)).join(', ')}, as its picture, ` +
+    `off by ${off.toExponential(1)} at most`);
+}
+
 // A picture of four shares of light, and the frame of a sun from a side; the floor is in it, beside it, and above the cloud's bottom.
 async function shadows(page, engine, more = {}) {
   const to_sun = unit([0.5, 1, 0.2]), right = unit([1, -0.5, 0]), up = unit([to_sun[1] * right[2] - to_sun[2] * right[1],
     to_sun[2] * right[0] - to_sun[0] * right[2], to_sun[0] * right[1] - to_sun[1] * right[0]]);
   const frame = { origin: [1, 2, -1], right, up, to_sun, width: 6, height: 4, sigma: 1, top: 1, bottom: -1 };
-  const at = (x, y, depth) => [0, 1, 2].map(i => frame.origin[i] + right[i] * frame.width * (x - 0.5) + up[i] * frame.height * (y - 0.5)
-    + to_sun[i] * depth);
   const shares = [[0.2, 0.4], [0.6, 0.8]];  // the upper row, the lower row
   const picture = await page.evaluate(rows => {
     const canvas = Object.assign(document.createElement('canvas'), { width: 2, height: 2 }), context = canvas.getContext('2d');
@@ -178,7 +194,7 @@ async function shadows(page, engine, more = {}) {
   const strength = 0.9, cases = [[0.1, 0.9, -2, 0.2], [0.9, 0.9, -2, 0.4], [0.1, 0.1, -2, 0.6], [0.9, 0.1, -2, 0.8], [1.1, 0.5, -2, 1],
     [0.1, 0.9, 0, 0.6], [0.1, 0.9, 2, 1]];
   const wanted = cases.map(([, , , through]) => 1 - strength * (1 - through));
-  const places = cases.map(([x, y, depth]) => at(x, y, depth));
+  const places = cases.map(([x, y, depth]) => inFrame(frame, x, y, depth));
   const found = await ask(page, 'shadowAt', { picture: 'shadow.png', strength, sun: to_sun, places, ...more });
   const off = Math.max(...found.map((share, i) => Math.abs(share - wanted[i])));
   demand(off < 0.01, `${engine}${more.physical ? ', PBRMaterial' : ''}: a shadow of the shares ${shares.join(', ')} darkens a floor to ` +
@@ -195,6 +211,7 @@ await testPage(folder, async page => {
     await openEngine(page, `http://127.0.0.1:${server.address().port}`, name);
     await lamps(page, engine);
     await fades(page, engine);
+    await shadowOfTheCloud(page, engine);
     await shadows(page, engine);
     if (engine === 'Babylon.js') await shadows(page, engine, { physical: true });
     await nearPainted(page, engine);

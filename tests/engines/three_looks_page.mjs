@@ -69,7 +69,7 @@ function depthOf(renderer, eye, away, [width, height]) {
 export async function shadowAt({ picture, strength, places, sun }) {
   const ratio = [];
   for (const shadow of [null, await CloudShadow.load(picture, strength)]) {
-    const size = [64, 64], renderer = rendererOf(size), scene = new Scene(), eye = new PerspectiveCamera(60, 1, 0.1, 100);
+    const size = [65, 65], renderer = rendererOf(size), scene = new Scene(), eye = new PerspectiveCamera(60, 1, 0.1, 100);
     const light = new DirectionalLight(0xffffff, 2), material = new MeshStandardMaterial({ roughness: 1 });
     light.position.set(...sun);
     const floor = new Mesh(new PlaneGeometry(50, 50), shadow ? shadow.darken(material) : material);
@@ -78,8 +78,8 @@ export async function shadowAt({ picture, strength, places, sun }) {
     const target = new WebGLRenderTarget(...size, { type: FloatType }), value = new Float32Array(4);
     const values = places.map(([x, y, z]) => {
       floor.position.y = y;
-      eye.position.set(x, y + 8, z);
-      eye.lookAt(x, y, z - 1e-4);
+      eye.position.set(x, y + 6, z + 6);
+      eye.lookAt(x, y, z);
       renderer.setRenderTarget(target);
       renderer.render(scene, eye);
       renderer.readRenderTargetPixels(target, 32, 32, 1, 1, value);
