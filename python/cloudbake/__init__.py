@@ -239,8 +239,8 @@ def transmittance(lobes, to_light, exponent, bias, extinction):
     except ValueError:
         raise UsageError(f"lobes of shape {lobes.shape} and to_light of shape {to_light.shape} do not fit together: for all lights at "
                          "all lobes, give lobes[:, None]") from None
-    spread = [numpy.broadcast_to(array, (*shape, array.shape[-1])) for array in (lobes, to_light)]
-    return _cloudbake.transmittance(*spread, *constants)
+    all_lobes, all_lights = (numpy.broadcast_to(array, (*shape, array.shape[-1])) for array in (lobes, to_light))
+    return _cloudbake.transmittance(all_lobes, all_lights, *constants)
 
 
 def presets():
