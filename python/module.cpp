@@ -180,6 +180,7 @@ class ProgressTeller {
 template <class Work>
 auto apart(Work work, py::object progress) {
   struct Job {
+    explicit Job(Work&& given) : work(std::move(given)) {}
     Work work;
     LoopStop stop;
     LoopProgress progress;

@@ -117,7 +117,7 @@ TEST(ChangedInputs, AnAssetIsMadeOfOneVersion) {
     const auto clean = [&](const std::string& bytes) {
       save(folder, one.file, bytes);
       fs::remove_all(folder.out);
-      const Made made = make(settings);
+      Made made = make(settings);
       EXPECT_EQ(stateOf(made.record), "baked new") << made.record.error;
       return made;
     };

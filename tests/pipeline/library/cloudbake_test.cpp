@@ -164,17 +164,17 @@ TEST(Cloudbake, ProgressNamesTheStageThatEndsNext) {
     EXPECT_GT(share, 0.5);
     return stages;
   };
-  for (const auto& [name, value] : Options{{"lobe", "mean"},
-                                           {"lobe", "fit"},
-                                           {"basis", "sh1"},
-                                           {"smooth", "2"},
-                                           {"inspect", "true"},
-                                           {"repair", "orient"},
-                                           {"vertices", "6"},
-                                           {"remesh", "30%"},
-                                           {"refine", "0.5"},
-                                           {"method", "rays"}})
-    stagesOf([&](const StageListener& listener) { bake(box(), with(kFew, name, value), listener); });
+  for (const auto& option : Options{{"lobe", "mean"},
+                                    {"lobe", "fit"},
+                                    {"basis", "sh1"},
+                                    {"smooth", "2"},
+                                    {"inspect", "true"},
+                                    {"repair", "orient"},
+                                    {"vertices", "6"},
+                                    {"remesh", "30%"},
+                                    {"refine", "0.5"},
+                                    {"method", "rays"}})
+    stagesOf([&](const StageListener& listener) { bake(box(), with(kFew, option.first, option.second), listener); });
   EXPECT_EQ(stagesOf([](const StageListener& listener) { bake(box(), with(kFew, "lobe", "mean"), listener); }),
             (std::vector<std::string>{"read", "check", "check", "field", "bake"}));
   stagesOf([](const StageListener& listener) { grow("puffball", with(kFew, "vertices", "200"), listener); });
