@@ -46,7 +46,7 @@ enum class WarningKind {
   kVolumeRebuilt,       ///< distances of a volume were computed: its band is too narrow or not closed, or it is a fog volume
   kOutsideField,        ///< something lies outside the integration field
   kMaterialIgnored,     ///< a material library, or a value of a material, that the output does not hold
-  kTextureIgnored,      ///< a texture that the output does not hold
+  kTextureIgnored,      ///< a texture that the output does not hold, or a colour that a picture does not show
   kCameraIgnored,       ///< a camera
   kLightIgnored,        ///< a light
   kCurveIgnored,        ///< a curve or a free-form surface

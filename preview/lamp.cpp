@@ -20,7 +20,7 @@ Flash flashOf(const LightningSettings& settings, uint32_t number) {
   const auto about = [&](float middle) { return middle * (0.5F + draw()); };
   Flash flash;
   const Vec3 side{2 * draw() - 1, 2 * draw() - 1, 2 * draw() - 1};
-  flash.place = settings.place + product(settings.spread, side);
+  flash.place = settings.place + settings.spread * side;
   float seconds = settings.at.value_or((settings.every_seconds - kLongestFlash) * draw());
   flash.strokes.push_back({seconds, 1});
   while (int(flash.strokes.size()) < settings.most_strokes && draw() >= kSingleStrokes) {

@@ -12,7 +12,6 @@ inline float lerp(float a, float b, float t) { return a + (b - a) * t; }
 inline Vec3 lerp(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
 
 /// Component by component.
-inline Vec3 product(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 inline Vec3 quotient(Vec3 a, Vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
 
 /// Of a linear colour with the primaries of sRGB (ITU-R BT.709).

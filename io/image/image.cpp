@@ -19,6 +19,7 @@
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_image.h>
@@ -48,6 +49,28 @@ std::string pngOf(int width, int height, int channels, const std::vector<uint8_t
   if (!stbi_write_png_to_func(appendBytes, &png, width, height, channels, bytes.data(), width * channels)) throw std::bad_alloc();
   png.insert(kAfterHeader, pngChunk("tEXt", std::string("Software") + '\0' + std::string(kMaker)));
   return png;
+}
+
+// `kinds` is "PNG", or "PNG or JPEG", for messages.
+Image decoded(std::string_view bytes, const std::string& name, const std::string& kinds, uint64_t memory_limit) {
+  // Read only the header first, so that a hostile size is rejected before memory is allocated for it.
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  int width = 0, height = 0, channels = 0;
+  if (bytes.size() > size_t(std::numeric_limits<int>::max()) || !stbi_info_from_memory(data, int(bytes.size()), &width, &height, &channels))
+    throw InputError(name, "is not a " + kinds + " picture");
+  if (int64_t(width) * height > kMaxPixels)
+    throw InputError(name, "has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; the limit is 2^28 in all");
+  requireMemory({"its " + std::to_string(width) + " × " + std::to_string(height) + " pixels",
+                 double(width) * height * double(sizeof(Vec3) + 4), "use a smaller picture"},
+                memory_limit, name);
+
+  const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(stbi_load_from_memory(data, int(bytes.size()), &width, &height, &channels, 3),
+                                                      stbi_image_free);
+  if (!rgb) throw InputError(name, "is a damaged " + kinds + " picture");
+  Image image = blankImage(width, height);
+  for (size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = {float(rgb.get()[3 * i]) / 255, float(rgb.get()[3 * i + 1]) / 255, float(rgb.get()[3 * i + 2]) / 255};
+  return image;
 }
 
 }  // namespace
@@ -80,24 +103,12 @@ std::string encodeJpeg(const Image& image, int quality) {
 }
 
 Image decodePng(std::string_view bytes, const std::string& name, uint64_t memory_limit) {
-  // Read only the header first, so that a hostile size is rejected before memory is allocated for it.
-  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-  int width = 0, height = 0, channels = 0;
-  if (bytes.size() > size_t(std::numeric_limits<int>::max()) || !stbi_info_from_memory(data, int(bytes.size()), &width, &height, &channels))
-    throw InputError(name, "is not a PNG picture");
-  if (int64_t(width) * height > kMaxPixels)
-    throw InputError(name, "has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; the limit is 2^28 in all");
-  requireMemory({"its " + std::to_string(width) + " × " + std::to_string(height) + " pixels",
-                 double(width) * height * double(sizeof(Vec3) + 4), "use a smaller picture"},
-                memory_limit, name);
+  if (!bytes.starts_with("\x89PNG\r\n\x1A\n")) throw InputError(name, "is not a PNG picture");
+  return decoded(bytes, name, "PNG", memory_limit);
+}
 
-  const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(stbi_load_from_memory(data, int(bytes.size()), &width, &height, &channels, 3),
-                                                      stbi_image_free);
-  if (!rgb) throw InputError(name, "is a damaged PNG picture");
-  Image image = blankImage(width, height);
-  for (size_t i = 0; i < image.pixels.size(); ++i)
-    image.pixels[i] = {float(rgb.get()[3 * i]) / 255, float(rgb.get()[3 * i + 1]) / 255, float(rgb.get()[3 * i + 2]) / 255};
-  return image;
+Image decodeImage(std::string_view bytes, const std::string& name, uint64_t memory_limit) {
+  return decoded(bytes, name, "PNG or JPEG", memory_limit);
 }
 
 }  // namespace cloudbake

@@ -32,4 +32,7 @@ std::vector<uint8_t> rgbBytes(const Image& tone_mapped_srgb);
 /// Throws InputError if the bytes are not a PNG or have more than 2^28 pixels.
 Image decodePng(std::string_view bytes, const std::string& name = "PNG", uint64_t memory_limit = kMemoryLimit);
 
+/// The same of a PNG or a JPEG.
+Image decodeImage(std::string_view bytes, const std::string& name, uint64_t memory_limit = kMemoryLimit);
+
 }  // namespace cloudbake

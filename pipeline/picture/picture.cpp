@@ -15,6 +15,7 @@
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
+#include "io/gltf/asset/own_colors.h"
 #include "io/image/animated_png.h"
 #include "io/image/exr.h"
 #include "io/image/image.h"
@@ -94,7 +95,7 @@ BakedMesh readMesh(const std::filesystem::path& file, uint64_t memory_limit, War
   ReadSettings read;
   read.memory_limit = memory_limit;
   requireMemoryForFile(file, memory_limit);
-  return decodeGlb(file, readFileBytes(file), warnings, read);
+  return decodeColoredGlb(file, readFileBytes(file), warnings, read);
 }
 
 // By what the meshes of a scenery are found.
@@ -303,9 +304,9 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
     for (int channel = 0; const char* name : {"sun", "sky", "opacity", "depth"})
       add(*view.channels, name, channelPicture(steps.front().channels, channel++));
   if (view.steps)
-    for (int number = 1; const auto& [name, channels, lamps] : steps)
+    for (int number = 1; const auto& [name, channels, colors] : steps)
       add(*view.steps, fmt::format("{}_{}", number++, name),
-          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, compositeOf(scene), lamps), view.exposure)));
+          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, compositeOf(scene), colors), view.exposure)));
   return files;
 }
 
@@ -351,8 +352,11 @@ void drawFilm(const Scenery& scenery, const PictureSink& sink, Pictures& drawn, 
 
 BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, BakeReport& report) {
   const BakedGlb baked = bakedGlb(from, isGrown(from.kind) ? std::optional(readGrownSource(from)) : std::nullopt, given, report);
-  Warnings told_by_the_bake;
-  return decodeGlb(from.input, baked.bytes, told_by_the_bake, baked.read);
+  Warnings told;
+  BakedMesh mesh = decodeColoredGlb(from.input, baked.bytes, told, baked.read);
+  if (const auto colors = told.entries().find(WarningKind::kTextureIgnored); colors != told.entries().end())  // the bake told the others
+    report.warnings.add(colors->first, colors->second.first, colors->second.count);
+  return mesh;
 }
 
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report) {

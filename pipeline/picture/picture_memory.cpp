@@ -61,7 +61,8 @@ std::string sizeText(const Camera& camera) { return fmt::format("{}x{} pixels", 
 
 MemoryNeed pixelsNeed(const SceneFile& scene, std::span<const Instance> instances, const Camera& camera) {
   const bool all_steps = scene.view.channels || scene.view.steps;
-  const double lights = scene.light.lamps.empty() ? 1 : 3;  // that of lamps goes through the chain as two more images
+  // The light of lamps and own colours go through the chain as two more images each.
+  const double lights = 1 + (scene.light.lamps.empty() ? 0 : 2) + (haveOwnColors(instances, scene.light) ? 2 : 0);
   const double steps = instances.empty() || scene.view.plain ? 0 : all_steps ? kAllSteps : kStepsKept;
   const double blurred = scene.grade.motion_blur ? kBytesPerBlurredPixel : 0;
   double pictures = 1;

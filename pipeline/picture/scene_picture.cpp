@@ -72,7 +72,7 @@ class Painter {
     return timed("mesh clouds", [&] {
       if (parts_.steps.empty()) drawSteps();
       return meshCloudLayer(*last_, *drawn_, rows, depthRangeOf(scene_.post, instances_), light_.sky, compositeOf(scene_),
-                            parts_.steps.back().lamps);
+                            parts_.steps.back().colors);
     });
   }
 

@@ -189,7 +189,7 @@ void SceneShadows::darken(std::span<Layer> layers, Kind kind, size_t index, cons
         }
       std::vector<float> shares(points.size(), 1);
       shadow.passage(points, shares);
-      for (size_t i = 0; i < pixels.size(); ++i) pixels[i]->color = product(pixels[i]->color, shadow.factor(shares[i]));
+      for (size_t i = 0; i < pixels.size(); ++i) pixels[i]->color = pixels[i]->color * shadow.factor(shares[i]);
     });
   }
 }

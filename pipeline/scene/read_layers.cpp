@@ -39,9 +39,9 @@ void adaptToSky(TerrainSettings& terrain, const SceneFile& scene) {
   TerrainLight& light = terrain.light;
   TerrainSkySettings& own = terrain.sky;
   for (Vec3* direct : {&light.sun, &light.specular, &own.wide_lobe, &own.middle_lobe, &own.narrow_lobe, &terrain.fog.scatter})
-    *direct = product(*direct, sun);
+    *direct = *direct * sun;
   for (Vec3* ambient : {&light.sky, &light.bounce, &light.snow_rim, &own.color, &own.haze, &own.cloud, &own.horizon, &terrain.fog.color})
-    *ambient = product(*ambient, from_sky);
+    *ambient = *ambient * from_sky;
   terrain.ground.snow_side = normalized(Vec3{-sky.to_sun.x, 0, -sky.to_sun.z}).value_or(terrain.ground.snow_side);
 }
 
@@ -77,9 +77,7 @@ void adaptTones(const TomlReader& table, bool as_published, const SceneFile& sce
   const Vec3 whole = hourTint(scene), sky = quotient(scene.light.sky.colors.ambient_sky, fullDay(scene).ambient_sky);
   const Vec3 from_sky{std::min(whole.x, sky.x), std::min(whole.y, sky.y), std::min(whole.z, sky.z)};  // shadows stay the darker tones
   const float night = slabNightFactor(scene.light.sky.colors, slab);
-  const auto adapt = [&](const char* key, Vec3& tone, Vec3 light) {
-    tone = as_published || table.has(key) ? tone * night : product(tone, light);
-  };
+  const auto adapt = [&](const char* key, Vec3& tone, Vec3 light) { tone = as_published || table.has(key) ? tone * night : tone * light; };
   adapt("shadow", slab.tones.shadow, from_sky);
   adapt("middle", slab.tones.middle, (whole + from_sky) * 0.5F);
   adapt("light", slab.tones.light, whole);

@@ -73,7 +73,7 @@ std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, cons
           const float full = smoothStep(1, settings.fade_start, length(transformPoint(to_ball, point)));
           CloudSample sample{{}, 1 - std::exp(-extinction * full * step), step};
           if (sample.opacity > 0)
-            sample.color = product(settings.color, from_sun * light(point, key.direction) + from_sky * light(point, {0, 1, 0}));
+            sample.color = settings.color * (from_sun * light(point, key.direction) + from_sky * light(point, {0, 1, 0}));
           sum.take(sample);
         }
         const CutPixels pixels = sum.pixels();

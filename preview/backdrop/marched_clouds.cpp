@@ -231,7 +231,7 @@ CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, O
       }
     }
     CloudSample sample = distanceCloudSample(t, density, density_to_light, settings);
-    if (sample.opacity > 0) sample.color = product(sample.color, shadow.factorAt(p * settings.scale));
+    if (sample.opacity > 0) sample.color = sample.color * shadow.factorAt(p * settings.scale);
     if (t > stretch->leave || t > settings.farthest) sample.step = INFINITY;
     samples.take(sample);
   }
@@ -259,7 +259,7 @@ CloudSample litSample(float t, float density, const DensityStep& step, float glo
                       const DensityCloudSettings& settings) {
   const Vec3 color =
       lerp(settings.thin_color, settings.dense_color, density) * settings.color_factor + settings.glow_color * (glow * (1 - density));
-  const Vec3 tinted = product(product(color, settings.tint), shadow);
+  const Vec3 tinted = color * settings.tint * shadow;
   const float fade = 1 - std::exp(-settings.fade_density * t * t);
   return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / step.parts), step.length};
 }
@@ -335,7 +335,7 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
       settings.shadow_floor;
   const Vec3 color = lerp(settings.thin_color, settings.dense_color, density) * shadow;
   const float near = settings.fade_start < 1 ? smoothStep(settings.farthest, settings.fade_start * settings.farthest, t) : 1;
-  const Vec3 tinted = product(color, settings.tint);
+  const Vec3 tinted = color * settings.tint;
   return {tinted, saturate(density * shadow * settings.opacity_factor * near),
           std::max(settings.least_step, (settings.step_base - settings.step_density * density) * t * settings.step_growth)};
 }

@@ -99,7 +99,7 @@ Vec3 moonColor(Vec3 view, const MoonSettings& settings) {
   if (!(mask > 1e-4F)) return {};
   const Vec2 uv = *moonUv(view, settings);
   if (!settings.picture) return settings.color * (mask * moonBrightness(uv, settings.phase_degrees));
-  return product(settings.color, colorAt(*settings.picture, uv)) * (mask * litShare(placeOnBall(uv), settings.phase_degrees));
+  return settings.color * colorAt(*settings.picture, uv) * (mask * litShare(placeOnBall(uv), settings.phase_degrees));
 }
 
 // By the square, because a screen shows the root of a light evenly.

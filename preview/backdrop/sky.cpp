@@ -132,7 +132,7 @@ SkyColors withAmbientOfSky(SkyColors colors, float sun_height) {
   const float luminance = luminanceOf(mean);
   colors.ambient_sky = lerp(mean, Vec3{1, 1, 1} * luminance, 0.5F);
   const Vec3 light = colors.sun_color * std::max(0.0F, sun_height) + colors.ambient_sky;
-  colors.ground = product({0.15F, 0.16F, 0.15F}, light);
+  colors.ground = Vec3{0.15F, 0.16F, 0.15F} * light;
   colors.ambient_ground = colors.ground * 0.4F;
   return colors;
 }

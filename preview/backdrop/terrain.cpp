@@ -302,10 +302,10 @@ Vec3 litColor(const Sight& sight, Vec3 view, Vec3 to_sun, const TerrainSettings&
   const float facing = facingOf(n, to_sun);
   const Vec3 shadow = Vec3{s, s, s} + settings.shadow.tint * (s * s - s);
   const Vec3 across = normalized(Vec3{-to_sun.x, 0, to_sun.z}).value_or(Vec3{});
-  Vec3 lit = product(light.sun, shadow) * facing;
+  Vec3 lit = light.sun * shadow * facing;
   lit += light.sky * (light.sky_plain + light.sky_up * n.y);
   lit += light.bounce * saturate(light.bounce_plain + light.bounce_facing * dot(n, across));
-  Vec3 color = product(material.albedo, lit);
+  Vec3 color = material.albedo * lit;
 
   // Gloss, and a rim of sky on snow.
   const Vec3 half = normalized(to_sun - view).value_or(n);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "core/harmonics.h"
@@ -67,6 +68,8 @@ void checkInstance(const Instance& instance) {
   if (mesh.lobes.size() != mesh.surface.positions.size()) throw std::invalid_argument("placeMeshes: a mesh needs one lobe per vertex");
   if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
     throw std::invalid_argument("placeMeshes: harmonics are of another number of vertices");
+  if (!mesh.colors.empty() && mesh.colors.size() != mesh.lobes.size())
+    throw std::invalid_argument("placeMeshes: not one colour per vertex");
   if (!instance.sun_shares.empty() && instance.sun_shares.size() != mesh.lobes.size())
     throw std::invalid_argument("placeMeshes: not one share of the sun per vertex");
   if (!inverted(instance.to_world)) throw std::invalid_argument("placeMeshes: a transform cannot be inverted");
@@ -111,6 +114,11 @@ std::vector<Vec3> lightOfLamps(const Instance& instance, std::span<const Vec3> n
   return sums;
 }
 
+// The own colour of each vertex.
+std::vector<Vec3> ownColors(const BakedMesh& mesh) {
+  return mesh.colors.empty() ? std::vector<Vec3>(mesh.surface.positions.size(), {1, 1, 1}) : mesh.colors;
+}
+
 // Places one instance in the frame of `lit`, lights it, and appends it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
   const BakedMesh& mesh = *instance.mesh;
@@ -118,8 +126,13 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(transformPoint(instance.to_world, p)));
 
   const std::vector<Triangle> triangles = worldTriangles(instance);
-  const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
   for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
+  if (light.shown == ShownLight::kOwnRedGreen || light.shown == ShownLight::kOwnBlue) {
+    for (const Vec3& own : ownColors(mesh))
+      lit.shades.push_back(light.shown == ShownLight::kOwnRedGreen ? Shade{own.x, own.y} : Shade{own.z, 0});
+    return;
+  }
+  const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
   if (light.shown != ShownLight::kSunAndSky) {
     for (const Vec3& lamps : lightOfLamps(instance, normals, light))
       lit.shades.push_back(light.shown == ShownLight::kLampsRedGreen ? Shade{lamps.x, lamps.y} : Shade{lamps.z, 0});
@@ -152,10 +165,12 @@ std::optional<Crossing> crossTriangle(const LitMesh& lit, uint32_t index, const 
 
   const Shade &p = lit.shades[ia], &q = lit.shades[ib], &r = lit.shades[ic];
   const float weight_q = float(u), weight_r = float(v), weight_p = 1 - weight_q - weight_r;
-  return Crossing{float(t),
-                  determinant > 0 ? 1 : -1,
-                  index,
-                  {weight_p * p.sun + weight_q * q.sun + weight_r * r.sun, weight_p * p.sky + weight_q * q.sky + weight_r * r.sky}};
+  Crossing crossing{float(t),
+                    determinant > 0 ? 1 : -1,
+                    index,
+                    {weight_p * p.sun + weight_q * q.sun + weight_r * r.sun, weight_p * p.sky + weight_q * q.sky + weight_r * r.sky}};
+  if (!lit.colors.empty()) crossing.color = lit.colors[ia] * weight_p + lit.colors[ib] * weight_q + lit.colors[ic] * weight_r;
+  return crossing;
 }
 
 bool isBefore(const Crossing& a, const Crossing& b) {
@@ -197,6 +212,10 @@ LightSettings lightForSun(float azimuth_degrees, float elevation_degrees) {
   light.sky.to_sun = directionFromAngles(azimuth_degrees, elevation_degrees);
   light.sky.colors = skyColorsForSun(light.sky.to_sun.y);
   return light;
+}
+
+bool haveOwnColors(std::span<const Instance> instances, const LightSettings& light) {
+  return light.own_colors && std::ranges::any_of(instances, [](const Instance& one) { return one.is_seen && !one.mesh->colors.empty(); });
 }
 
 Lobe transformedLobe(const Lobe& lobe, const Affine& to_world) {
@@ -281,6 +300,9 @@ LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& li
 
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
   LitMesh lit = placeMeshes(instances, light);
+  if (haveOwnColors(instances, light))
+    for (const Instance& instance : instances)
+      if (instance.is_seen) std::ranges::copy(ownColors(*instance.mesh), std::back_inserter(lit.colors));
   if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles, light.rays);
   return lit;
 }
@@ -340,6 +362,8 @@ const Keys<LightSettings>& lightKeys() {
       {"half_lambert_sky", &S::half_lambert_sky, 0, 1,
        "the same for the sky's term, with the direction up; 0.5 in maajor/Mesh-Cloud-Rendering"},
       {"volume_gain", &S::volume_gain, 0, 10, "factor of the sun's term of clouds that were fitted to a volume, up to all of the light"},
+      {"own_colors", &S::own_colors, 0, 1, "clouds have the base colours of their sculpts: materials, textures and vertex colours",
+       KeyUse::kScript, "the page shows clouds without them"},
       {"lobes_only", &S::lobes_only, 0, 1, "clouds are lit by their lobes even where an asset has harmonics", KeyUse::kScript,
        "'Light by' chooses it"},
       {"extinction", &S::extinction, 1e-9, 1e9, "σ of all mesh clouds per world unit, in place of their own", KeyUse::kScript,

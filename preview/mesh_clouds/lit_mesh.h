@@ -15,8 +15,9 @@
 
 namespace cloudbake {
 
-/// What the two fields of a vertex are: the light of sun and sky, or red and green, or blue and nothing of the light of lamps.
-enum class ShownLight : uint8_t { kSunAndSky, kLampsRedGreen, kLampsBlue };
+/// What the two fields of a vertex are: the light of sun and sky, or red and green, or blue and nothing of the light of lamps or of the
+/// clouds' own colours.
+enum class ShownLight : uint8_t { kSunAndSky, kLampsRedGreen, kLampsBlue, kOwnRedGreen, kOwnBlue };
 
 /// How clouds are lit and drawn. Colours are linear.
 struct LightSettings {
@@ -28,6 +29,7 @@ struct LightSettings {
   float volume_gain = 1;            ///< R of meshes that were fitted to a volume is multiplied by it, up to 1
   float view_extinction = 4;   ///< opacity along the view, in units of σ, > 0: edges soften where the cloud is thin. 0 = opaque surface
   bool first_surface = false;  ///< the first surface shows its light; else light changes evenly from the front of the cloud to its back
+  bool own_colors = true;      ///< the base colours of sculpts multiply the light of their clouds
   int samples_per_side = 4;    ///< n·n rays per pixel, ≥ 1
   std::vector<Lamp> lamps;     ///< beside sun and sky
   ShownLight shown = ShownLight::kSunAndSky;
@@ -58,6 +60,9 @@ struct Instance {
   std::optional<Scattered> scattered = std::nullopt;  ///< of a cloud of a field
   bool is_seen = true;                                ///< else nothing of it is in the picture, and it is not drawn
 };
+
+/// Whether something is drawn in a colour of its own.
+bool haveOwnColors(std::span<const Instance> instances, const LightSettings& light);
 
 /// The lobe of a vertex that is moved by `to_world`: v = M·(o·d) with M the linear part, o = v/‖v‖, d = ‖v‖.
 Lobe transformedLobe(const Lobe& lobe, const Affine& to_world);
@@ -105,6 +110,7 @@ PlacedMesh placedMesh(const Instance& instance, const LightSettings& light);
 struct LitMesh {
   std::vector<Vec3> positions;
   std::vector<Shade> shades;
+  std::vector<Vec3> colors;  ///< own ones; empty if all are white
   std::vector<Triangle> triangles;
   Vec3 center;
   float size = 1;                        ///< world units per unit of the frame
@@ -120,7 +126,7 @@ std::vector<Vec3> worldPositions(const Instance& instance);
 /// Throws std::invalid_argument if a mesh does not have one lobe per vertex, or some but not all shares of the sun, or if a transform
 /// cannot be inverted.
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light);
-/// The same, not prepared for rays.
+/// The same, not prepared for rays and without colours.
 LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& light);
 
 /// One mesh in its own place, in the same frame, with the given shades; lobes and normals are not read. Throws std::invalid_argument if
@@ -140,6 +146,7 @@ struct Crossing {
   int sign = 0;  ///< +1 into the cloud, −1 out of it
   uint32_t triangle = 0;
   Shade shade;
+  Vec3 color{1, 1, 1};  ///< the cloud's own
 };
 
 /// Every triangle that a ray of the frame meets, near to far. A ray through an edge meets both triangles of the edge.

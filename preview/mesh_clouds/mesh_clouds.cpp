@@ -2,6 +2,7 @@
 // Thieves: draw at half resolution, downsample to a quarter, blur by depth, blur the depth, distort, composite.
 #include "preview/mesh_clouds/mesh_clouds.h"
 
+#include <array>
 #include <utility>
 
 #include "core/parallel.h"
@@ -119,18 +120,34 @@ std::vector<ChainStep> chainOf(std::span<const Instance> instances, const Camera
   return std::move(chain).steps();
 }
 
+// The two images of a colour after each of `steps`.
+void addColors(std::span<const Instance> instances, const Camera& camera, LightSettings light, const PostSettings& settings, StepsKept kept,
+               std::array<ShownLight, 2> shown, ColorChannels CloudColors::*colors, std::vector<ChainStep>& steps) {
+  for (const ShownLight one : shown) {
+    light.shown = one;
+    std::vector<ChainStep> same = chainOf(instances, camera, light, settings, kept);
+    for (size_t i = 0; i < steps.size(); ++i) (steps[i].colors.*colors).push_back(std::move(same[i].channels));
+  }
+}
+
+// Of own colours: no black of a pixel's rest bleeds into them, and nothing darkens them.
+PostSettings stepsOfColors(PostSettings settings) {
+  if (settings.published) setChannelMean(settings, ChannelMean::kCovered);
+  settings.distort.dark = 1;
+  settings.painted.erode.darkening = 0;
+  return settings;
+}
+
 }  // namespace
 
 std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                                       const PostSettings& settings, StepsKept kept) {
   std::vector<ChainStep> steps = chainOf(instances, camera, light, settings, kept);
-  if (light.lamps.empty()) return steps;
-  LightSettings of_lamps = light;
-  for (const ShownLight shown : {ShownLight::kLampsRedGreen, ShownLight::kLampsBlue}) {
-    of_lamps.shown = shown;
-    std::vector<ChainStep> same = chainOf(instances, camera, of_lamps, settings, kept);
-    for (size_t i = 0; i < steps.size(); ++i) steps[i].lamps.push_back(std::move(same[i].channels));
-  }
+  if (!light.lamps.empty())
+    addColors(instances, camera, light, settings, kept, {ShownLight::kLampsRedGreen, ShownLight::kLampsBlue}, &CloudColors::lamps, steps);
+  if (haveOwnColors(instances, light))
+    addColors(instances, camera, light, stepsOfColors(settings), kept, {ShownLight::kOwnRedGreen, ShownLight::kOwnBlue}, &CloudColors::own,
+              steps);
   return steps;
 }
 
@@ -141,13 +158,14 @@ Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& 
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                        const PostSettings& settings) {
   const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, light, settings, StepsKept::kEnds);
-  return composite(steps.back().channels, drawSky(camera, light.sky, settings), camera, light.sky, settings.composite, steps.back().lamps);
+  return composite(steps.back().channels, drawSky(camera, light.sky, settings), camera, light.sky, settings.composite, steps.back().colors);
 }
 
 Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& camera, const DepthRange& range, const SkySettings& sky,
-                     const CompositeSettings& settings, const LampChannels& lamps) {
+                     const CompositeSettings& settings, const CloudColors& colors) {
   Image4 resampled, resampled_drawn;
-  const LampPixels lamp_pixels(lamps, camera.width, camera.height, settings.mean);
+  const ColorPixels lamps(colors.lamps, camera.width, camera.height, settings.mean, {});
+  const ColorPixels own_colors(colors.own, camera.width, camera.height, ChannelMean::kCovered, {1, 1, 1});
   const Image4& full = atSize(channels, camera.width, camera.height, settings.mean, resampled);
   const Image4& own = atSize(drawn, camera.width, camera.height, settings.mean, resampled_drawn);
   const Vec3 forward = cameraAxes(camera).forward;
@@ -161,7 +179,7 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
       if (!(pixel[2] > 0)) continue;
       const Vec3 view = rays.at(float(x) + 0.5F, float(row) + 0.5F).direction;
       const float depth = here[2] > 0 ? here[3] : pixel[3];
-      layer.at(x, y) = {foggedCloud(pixel, view, light, settings, lamp_pixels.at(x, row)), pixel[2],
+      layer.at(x, y) = {foggedCloud(pixel, view, light, settings, lamps.at(x, row), own_colors.at(x, row)), pixel[2],
                         lerp(range.near, range.far, depth) / dot(view, forward)};
     }
   });

@@ -55,7 +55,7 @@ void setChannelMean(PostSettings& settings, ChannelMean mean);
 struct ChainStep {
   std::string name;
   Image4 channels;
-  LampChannels lamps{};
+  CloudColors colors{};
 };
 
 /// The light with what this chain changes of it: skyColorsFor its sun and ramp, and how much of the light falls by the surface's angle to
@@ -75,7 +75,7 @@ DepthRange depthRangeOf(const PostSettings& settings, std::span<const Instance> 
 enum class StepsKept { kAll, kEnds };
 
 /// The channels after each step of the chain; the first are what was drawn, the last what composite and meshCloudLayer take. If there are
-/// lamps, their light goes through the same steps.
+/// lamps, their light goes through the same steps, and so do own colours of clouds, as means over what is covered.
 /// `light.samples_per_side` and `light.view_extinction` are ignored: the chain has its own samples and softens edges. Throws as placeMeshes
 /// does.
 std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
@@ -92,6 +92,6 @@ Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera
 /// distances along the rays are those of the clouds that were drawn at the pixel, from A between the depths of `range`: the steps of the
 /// chain mix the depths of clouds that are beside each other. Where none was drawn they are those of `channels`.
 Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& camera, const DepthRange& range, const SkySettings& sky,
-                     const CompositeSettings& settings, const LampChannels& lamps = {});
+                     const CompositeSettings& settings, const CloudColors& colors = {});
 
 }  // namespace cloudbake

@@ -262,23 +262,29 @@ Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const CloudLight& light, cons
   return cloudColor({channels[0], channels[1]}, colors);
 }
 
-LampPixels::LampPixels(const LampChannels& lamps, int width, int height, ChannelMean mean) {
-  if (lamps.empty()) return;
-  red_green_ = &atSize(lamps[0], width, height, mean, resampled_[0]);
-  blue_ = &atSize(lamps[1], width, height, mean, resampled_[1]);
+ColorPixels::ColorPixels(const ColorChannels& colors, int width, int height, ChannelMean mean, Vec3 otherwise) : otherwise_(otherwise) {
+  if (colors.empty()) return;
+  red_green_ = &atSize(colors[0], width, height, mean, resampled_[0]);
+  blue_ = &atSize(colors[1], width, height, mean, resampled_[1]);
+  // The light may cover places nearby by another mean.
+  for (Rgba& p : resampled_[0].pixels)
+    if (!(p[2] > 0)) p[0] = otherwise.x, p[1] = otherwise.y;
+  for (Rgba& p : resampled_[1].pixels)
+    if (!(p[2] > 0)) p[0] = otherwise.z;
 }
 
-Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings, Vec3 lamps) {
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings, Vec3 lamps, Vec3 own) {
   const float fog = 1 - std::exp(-settings.fog_density * channels[3]);
   const Vec3 fog_color =
       settings.fog_color.value_or(light.colors.horizon) + scatteredLight(view, light.to_light, light.colors.sun_color, settings.scatter);
-  return lerp(lightOfCloud(channels, view, light, settings.phase) + lamps, fog_color, fog);
+  return lerp((lightOfCloud(channels, view, light, settings.phase) + lamps) * own, fog_color, fog);
 }
 
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
-                const CompositeSettings& settings, const LampChannels& lamps) {
+                const CompositeSettings& settings, const CloudColors& colors) {
   Image4 resampled;
-  const LampPixels lamp_pixels(lamps, background.width, background.height, settings.mean);
+  const ColorPixels lamps(colors.lamps, background.width, background.height, settings.mean, {});
+  const ColorPixels own(colors.own, background.width, background.height, ChannelMean::kCovered, {1, 1, 1});
   const Image4& full = atSize(channels, background.width, background.height, settings.mean, resampled);
   Image result = background;
   const CloudLight light = cloudLight(sky);
@@ -288,7 +294,8 @@ Image composite(const Image4& channels, const Image& background, const Camera& c
       const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;
       const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
-      result.at(x, y) = foggedCloud(pixel, view, light, settings, lamp_pixels.at(x, y)) * pixel[2] + background.at(x, y) * (1 - pixel[2]);
+      const Vec3 color = foggedCloud(pixel, view, light, settings, lamps.at(x, y), own.at(x, y));
+      result.at(x, y) = color * pixel[2] + background.at(x, y) * (1 - pixel[2]);
     }
   });
   return result;

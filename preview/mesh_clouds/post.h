@@ -122,9 +122,15 @@ CloudLight cloudLight(const SkySettings& sky);
 /// The colour of a cloud's channels seen along `view`: cloudColor with the term of the key light times phaseFactor.
 Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const PhaseSettings& settings);
 
-/// The light of lamps, which went through the same steps as the channels of sun and sky and has their opacity and depth: red and green, and
-/// blue, in R and G of two images. Empty without lamps.
-using LampChannels = std::vector<Image4>;
+/// Colours that went through the same steps as the channels of sun and sky and have their opacity and depth: red and green, and blue, in R
+/// and G of two images. Empty if there are none.
+using ColorChannels = std::vector<Image4>;
+
+/// What a cloud has beside the light of sun and sky.
+struct CloudColors {
+  ColorChannels lamps;  ///< the light of lamps
+  ColorChannels own;    ///< the clouds' own colours; empty: white
+};
 
 struct CompositeSettings {
   float fog_density = 0.2F;  ///< of the fog's 1 − exp(−density·A), ≥ 0; 0 = no fog
@@ -136,16 +142,17 @@ struct CompositeSettings {
 /// Its keys in a scene file.
 const Keys<CompositeSettings>& chainFogKeys();
 
-/// lightOfCloud and the light of lamps, faded by the fog of its depth.
-Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings, Vec3 lamps = {});
+/// lightOfCloud and the light of lamps, times the cloud's own colour, faded by the fog of its depth.
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings, Vec3 lamps = {},
+                 Vec3 own = {1, 1, 1});
 
-/// Reads the light of lamps at the pixels of a picture.
-class LampPixels {
+/// Reads colours at the pixels of a picture.
+class ColorPixels {
  public:
-  /// Both must outlive this.
-  LampPixels(const LampChannels& lamps, int width, int height, ChannelMean mean);
+  /// `colors` must outlive this; if they are empty, each pixel is `otherwise`.
+  ColorPixels(const ColorChannels& colors, int width, int height, ChannelMean mean, Vec3 otherwise);
   Vec3 at(int x, int y) const {
-    if (!red_green_) return {};
+    if (!red_green_) return otherwise_;
     const Rgba& p = red_green_->at(x, y);
     return {p[0], p[1], blue_->at(x, y)[0]};
   }
@@ -153,11 +160,12 @@ class LampPixels {
  private:
   Image4 resampled_[2];
   const Image4 *red_green_ = nullptr, *blue_ = nullptr;
+  Vec3 otherwise_;
 };
 
 /// foggedCloud over the background by B, as composeLayers puts it there. The channels may be smaller than the
 /// background, which has the camera's size: they are read bilinearly at its pixels. Where B is 0, the background stays exactly the same.
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
-                const CompositeSettings& settings = {}, const LampChannels& lamps = {});
+                const CompositeSettings& settings = {}, const CloudColors& colors = {});
 
 }  // namespace cloudbake

@@ -1,6 +1,6 @@
 // "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its last step, on the fields R and G of
 // preview/mesh_clouds/lit_mesh.h:
-//   C = lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G)
+//   C = lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G), times the cloud's own colour
 // Soft edges: along a view ray the cloud fills intervals [a, b] between the surface's crossings, where the winding number
 // is not 0. Each interval absorbs as a medium of extinction σ_v and shines in a colour that runs from C(a) to C(b),
 //   ∫₀^τ e^{−x} (C(a) + (C(b) − C(a))·x/τ) dx = C(a)(1 − e^{−τ}) + (C(b) − C(a))·((1 − e^{−τ})/τ − e^{−τ}),   τ = σ_v (b − a),
@@ -39,13 +39,15 @@ void dropRepeated(const LitMesh& lit, std::vector<Crossing>& crossings) {
   crossings.resize(kept);
 }
 
+Vec3 colorAt(const Crossing& crossing, const SkyColors& colors) { return cloudColor(crossing.shade, colors) * crossing.color; }
+
 // The cloud's intervals over the sky, front to back; σ_v and crossings in the frame.
 Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float view_extinction, const SkyColors& colors,
                 const LightSettings& light) {
   if (crossings.empty()) return skyColor(ray.direction, light.sky);
   int sum = 0;
   for (const Crossing& crossing : crossings) sum += crossing.sign;
-  if (sum != 0 || !(view_extinction > 0)) return cloudColor(crossings.front().shade, colors);
+  if (sum != 0 || !(view_extinction > 0)) return colorAt(crossings.front(), colors);
 
   Vec3 color;
   float through = 1;  // transmittance so far
@@ -57,8 +59,8 @@ Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float vi
     if (winding != 0) continue;
     const float depth = view_extinction * (crossing.t - entry->t), passed = std::exp(-depth);
     const float later = depth > 1e-3F ? (1 - passed) / depth - passed : 0.5F * depth;
-    const Shade& first = light.first_surface ? crossings.front().shade : entry->shade;
-    const Vec3 near = cloudColor(first, colors), far = light.first_surface ? near : cloudColor(crossing.shade, colors);
+    const Crossing& first = light.first_surface ? crossings.front() : *entry;
+    const Vec3 near = colorAt(first, colors), far = light.first_surface ? near : colorAt(crossing, colors);
     color += (near * (1 - passed) + (far - near) * later) * through;
     through *= passed;
   }

@@ -119,7 +119,7 @@ std::optional<Point> hitPoint(Draws& draw) {
 std::optional<Point> passPoint(Draws& draw) {
   const TerrainSettings& t = testedTerrain();
   const Vec3 point = groundPoint(draw) + Vec3{0, t.scale * draw.between(0, 3), 0};
-  const Vec3 to_sun = *normalized(product(draw.direction(), {1, 0.3F, 1}) + Vec3{0, 0.1F, 0});
+  const Vec3 to_sun = *normalized(draw.direction() * Vec3{1, 0.3F, 1} + Vec3{0, 0.1F, 0});
   const auto share = [&](float offset) {
     const Vec3 moved = point + Vec3{0, offset, 0};
     float passed = 1;

@@ -160,8 +160,8 @@ std::vector<std::string> materialNames(const Json& json) {
 
 }  // namespace
 
-BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings) {
-  const LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
+BakedMesh decodeLoaded(const LoadedGltf& loaded) {
+  const fs::path& file = loaded.document->file;
   BakedMesh baked;
   baked.info = requireInfo(file, loaded.document->json);
   baked.surface = surfaceInScene(loaded.sculpt);
@@ -171,6 +171,10 @@ BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warn
     if (baked.info.harmonic_order > 0) decodeHarmonics(loaded, i, baked.info.harmonic_order, baked.harmonics);
   }
   return baked;
+}
+
+BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings) {
+  return decodeLoaded(loadGltf(file, bytes, settings, warnings));
 }
 
 bool isBakedAsset(const fs::path& file, std::string_view bytes) {

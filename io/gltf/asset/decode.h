@@ -19,6 +19,10 @@ namespace cloudbake {
 /// buffers. Throws InputError if the file is damaged or not a baked asset (no metadata, or a part without the UV sets).
 BakedMesh decodeGlb(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings = {});
 
+struct LoadedGltf;
+/// The same of a glTF that was loaded. Only for io/gltf/asset.
+BakedMesh decodeLoaded(const LoadedGltf& loaded);
+
 /// Whether a .gltf or .glb is a baked asset, as far as its metadata shows; false for a damaged file.
 bool isBakedAsset(const std::filesystem::path& file, std::string_view bytes);
 

@@ -49,6 +49,20 @@ TEST(Image, ValuesOutsideTheRangeBecomeItsEnds) {
   EXPECT_EQ(back.at(1, 0), (Vec3{1, 0, 1}));
 }
 
+TEST(Image, AJpegIsReadWhereItMayBeOne) {
+  const Image grey{16, 8, std::vector<Vec3>(128, {0.5F, 0.5F, 0.5F})};
+  const std::string jpeg = encodeJpeg(grey, 90), png = encodePng(grey);
+  for (const std::string& bytes : {jpeg, png}) {
+    const Image back = decodeImage(bytes, "a picture");
+    ASSERT_EQ(back.width, 16);
+    ASSERT_EQ(back.height, 8);
+    for (const Vec3& p : back.pixels) EXPECT_NEAR(p.y, 0.5F, 2.0F / 255);
+  }
+  EXPECT_THROW(decodePng(jpeg), InputError);
+  EXPECT_THROW(decodeImage("no picture", "a picture"), InputError);
+  EXPECT_THROW(decodeImage(jpeg, "a picture", 1000), InputError);
+}
+
 TEST(Image, RefusesWhatIsNoPicture) {
   EXPECT_THROW(encodePng(Image{}), std::invalid_argument);
   EXPECT_THROW(encodePng(Image{4, 4, std::vector<Vec3>(15)}), std::invalid_argument);

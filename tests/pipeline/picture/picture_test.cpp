@@ -13,10 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A baked ball at out.glb.
-fs::path ballAsset(const TestFolder& folder) {
-  Settings settings =
-      settingsFor({"rays=16", "voxels=16", "units=1", "up=y"}, SourceKind::kSculpt, folder.write("ball.obj", objText(ballMesh(1, 2))));
+// A baked ball at out.glb. `material`: lines of its OBJ.
+fs::path ballAsset(const TestFolder& folder, const std::string& material = "") {
+  Settings settings = settingsFor({"rays=16", "voxels=16", "units=1", "up=y"}, SourceKind::kSculpt,
+                                  folder.write("ball.obj", material + objText(ballMesh(1, 2))));
   settings.output.file = folder.path / "out.glb";
   BakeReport report;
   Stopwatch watch;
@@ -102,6 +102,24 @@ TEST(Picture, WhatIsWatchedIsBakedUnlessItIsAnAsset) {
   EXPECT_EQ(sculpt.scene.light.sky.to_sun.x, baked.scene.light.sky.to_sun.x);
   BakeReport report;
   expectError<UsageError>([&] { bake(asset, {"sun=10,20", "rays=36"}, report); }, "--rays: " + asset.string() + " is baked already");
+}
+
+// The material of a sculpt goes from its file through the bake to the picture.
+TEST(Picture, HasTheColorsOfTheSculpt) {
+  const TestFolder folder;
+  const Vec3 white = decoded(drawAsset(ballAsset(folder), {}).pictures.png).at(24, 16);
+  EXPECT_GT(white.y, 0.8F * white.x);
+  folder.write("red.mtl", "newmtl red\nKd 1 0 0\n");
+  const fs::path asset = ballAsset(folder, "mtllib red.mtl\nusemtl red\n");
+  for (const char* look : {"painted", "plain"}) {
+    const Vec3 red = decoded(drawAsset(asset, {std::string("look=") + look}).pictures.png).at(24, 16);
+    EXPECT_GT(red.x, 0.3F) << look;
+    EXPECT_LT(red.y, 0.5F * red.x) << look << ": only the fog is not red";
+  }
+  const std::vector<Given> given = options({"rays=16", "voxels=16", "units=1", "up=y"}, kView);
+  BakeReport report;
+  const Scenery watched = bakeScenery(resolve(sourceOf(SourceKind::kSculpt, folder.path / "ball.obj"), given), given, report);
+  EXPECT_EQ(watched.instances.at(0).mesh->colors, std::vector<Vec3>(watched.instances[0].mesh->lobes.size(), {1, 0, 0}));
 }
 
 TEST(Picture, ChannelsAndStepsAreFilesBesideIt) {

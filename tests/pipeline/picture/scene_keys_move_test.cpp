@@ -134,6 +134,7 @@ const BakedMesh& litBall() {
   static const BakedMesh mesh = [] {
     BakedMesh made = bakedBall(1, {}, 3);
     made.info.volume.emplace();  // so that volume_gain is of use
+    made.colors.assign(made.lobes.size(), {1, 0.7F, 0.5F});
     made.info.harmonic_order = 1;
     for (size_t v = 0; v < made.lobes.size(); ++v) made.harmonics.insert(made.harmonics.end(), {1, 0.2F, -0.1F, 0.3F});
     return made;

@@ -36,7 +36,7 @@ TEST(Dust, HomogeneousDustIsTheClosedForm) {
     for (int x = 0; x < camera.width; ++x) {
       const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
       const Vec3 from = ray.origin - Vec3{0.3F, -0.2F, 0.1F}, scale{0.5F, 1, 1};  // into the unit ball
-      const Vec3 p = product(from, scale), d = product(ray.direction, scale);
+      const Vec3 p = from * scale, d = ray.direction * scale;
       const double a = dot(d, d), b = dot(p, d), c = double(dot(p, p)) - 1, root = b * b - a * c;
       const LayerPixel& pixel = layer.at(x, y);
       if (root <= 0) {
@@ -46,7 +46,7 @@ TEST(Dust, HomogeneousDustIsTheClosedForm) {
       const double chord = 2 * std::sqrt(root) / a, opacity = 1 - std::exp(-1.5 / 4 * chord);
       EXPECT_NEAR(pixel.opacity, opacity, 0.01);
       const float phase = henyeyGreenstein(dot(ray.direction, sky.to_sun), 0.6F);
-      const Vec3 light = product(settings.color, sky.colors.sun_color * phase + sky.colors.ambient_sky * 2);
+      const Vec3 light = settings.color * (sky.colors.sun_color * phase + sky.colors.ambient_sky * 2);
       EXPECT_LT(length(pixel.color - light), 1e-4F * length(light));
       EXPECT_TRUE(pixel.distance > 6 && pixel.distance < 12);
       ++inside;

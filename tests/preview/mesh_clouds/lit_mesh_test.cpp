@@ -275,5 +275,23 @@ TEST(LitMesh, LambertIsTheCosineOfTheNormal) {
   for (size_t v = 0; v < given.size(); ++v) EXPECT_NEAR(made[v].sun, given[v].sun, 0.02);
 }
 
+// Linear in the place, so that the colour of a crossing says where it is.
+TEST(LitMesh, ColorsAreInterpolatedAtCrossings) {
+  BakedMesh ball = bakedBall(1, {}, 3);
+  for (const Vec3& p : ball.surface.positions) ball.colors.push_back(Vec3{0.5F, 0.5F, 0.5F} + p * 0.4F);
+  const Instance instances[] = {{&ball, {}}};
+  LightSettings light = lightForSun(100, 25);
+  const LitMesh lit = lightMeshes(instances, light);
+  const Ray ray{{0.1F, 0.2F, 3}, {0, 0, -1}};
+  const auto crossing = nearestCrossing(lit, ray);
+  ASSERT_TRUE(crossing);
+  const Vec3 place = (ray.origin + ray.direction * crossing->t) * lit.size + lit.center;
+  EXPECT_LE(length(crossing->color - (Vec3{0.5F, 0.5F, 0.5F} + place * 0.4F)), 1e-5F);
+  light.own_colors = false;
+  EXPECT_TRUE(lightMeshes(instances, light).colors.empty());
+  ball.colors.pop_back();
+  EXPECT_THROW(placeMeshes(instances, light), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace cloudbake

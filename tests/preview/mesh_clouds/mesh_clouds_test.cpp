@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -67,10 +68,10 @@ TEST(MeshClouds, LampsGoThroughTheSameSteps) {
     ASSERT_EQ(lit.size(), dark.size());
     for (size_t i = 0; i < lit.size(); ++i) {
       EXPECT_EQ(lit[i].channels.pixels, dark[i].channels.pixels);
-      EXPECT_TRUE(dark[i].lamps.empty());
-      ASSERT_EQ(lit[i].lamps.size(), 2U);
+      EXPECT_TRUE(dark[i].colors.lamps.empty());
+      ASSERT_EQ(lit[i].colors.lamps.size(), 2U);
       for (size_t p = 0; p < lit[i].channels.pixels.size(); ++p) {
-        const Rgba &sun = lit[i].channels.pixels[p], &first = lit[i].lamps[0].pixels[p], &second = lit[i].lamps[1].pixels[p];
+        const Rgba &sun = lit[i].channels.pixels[p], &first = lit[i].colors.lamps[0].pixels[p], &second = lit[i].colors.lamps[1].pixels[p];
         ASSERT_NEAR(first[0], 0.5F * sun[0], 2e-3F);
         ASSERT_NEAR(first[1], sun[0], 4e-3F);
         ASSERT_NEAR(second[0], 2 * sun[0], 8e-3F);
@@ -87,9 +88,64 @@ TEST(MeshClouds, LampsGoThroughTheSameSteps) {
       for (size_t p = 0; p < with.pixels.size(); ++p) {
         const float opacity = last.channels.pixels[p][2];
         const Vec3 more = with.pixels[p] - without.pixels[p];
-        ASSERT_NEAR(more.y, last.lamps[0].pixels[p][1] * opacity, 1e-4F);
-        ASSERT_NEAR(more.z, last.lamps[1].pixels[p][0] * opacity, 1e-4F);
+        ASSERT_NEAR(more.y, last.colors.lamps[0].pixels[p][1] * opacity, 1e-4F);
+        ASSERT_NEAR(more.z, last.colors.lamps[1].pixels[p][0] * opacity, 1e-4F);
       }
+  }
+}
+
+// Own colours multiply the light of a cloud before the fog; white ones and switched ones change no bit.
+TEST(MeshClouds, OwnColorsMultiplyTheLight) {
+  const BakedMesh plain = bakedBall(1, {}, 4);
+  BakedMesh white = plain, red = plain;
+  white.colors.assign(plain.lobes.size(), {1, 1, 1});
+  constexpr Vec3 kOwn{0.9F, 0.3F, 0.1F};
+  red.colors.assign(plain.lobes.size(), kOwn);
+  for (PostSettings settings : {PostSettings{}, publishedPost()}) {
+    settings.distort.time_seconds = 3;
+    settings.distort.dark = 0.8F;
+    LightSettings light = someLight();
+    light.lamps = {{{2, 2, 3}, {5, 2, 9}}};
+    const auto drawn = [&](const BakedMesh& mesh) { return renderMeshClouds(std::array{Instance{&mesh, {}}}, kCamera, light, settings); };
+    const Image without = drawn(plain);
+    const Image with_white = drawn(white);
+    for (size_t p = 0; p < without.pixels.size(); ++p) ASSERT_LE(length(with_white.pixels[p] - without.pixels[p]), 1e-5F);
+
+    const std::vector<ChainStep> steps = drawMeshClouds(std::array{Instance{&red, {}}}, kCamera, light, settings);
+    const ChainStep& last = steps.back();
+    const Image sky = drawSky(kCamera, light.sky, settings), lit = drawn(red);
+    const CloudLight cloud_light = cloudLight(light.sky);
+    const CameraRays rays(kCamera);
+    Image4 buffer;
+    const Image4& channels = atSize(last.channels, kCamera.width, kCamera.height, settings.composite.mean, buffer);
+    const ColorPixels lamps(last.colors.lamps, kCamera.width, kCamera.height, settings.composite.mean, {});
+    size_t covered = 0;
+    for (int y = 0; y < kCamera.height; ++y)
+      for (int x = 0; x < kCamera.width; ++x) {
+        const Rgba& pixel = channels.at(x, y);
+        if (!(pixel[2] > 0)) {
+          ASSERT_EQ(lit.at(x, y), sky.at(x, y));
+          continue;
+        }
+        const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
+        const Vec3 light_here = lightOfCloud(pixel, view, cloud_light, settings.composite.phase) + lamps.at(x, y);
+        const float fog = 1 - std::exp(-settings.composite.fog_density * pixel[3]);
+        const Vec3 fog_color = settings.composite.fog_color.value_or(cloud_light.colors.horizon) +
+                               scatteredLight(view, cloud_light.to_light, cloud_light.colors.sun_color, settings.composite.scatter);
+        const Vec3 cloud = lerp(Vec3{light_here.x * kOwn.x, light_here.y * kOwn.y, light_here.z * kOwn.z}, fog_color, fog);
+        ASSERT_LE(length(lit.at(x, y) - lerp(sky.at(x, y), cloud, pixel[2])), 2e-4F) << x << " " << y;
+        ++covered;
+      }
+    EXPECT_GT(covered, 500U);
+
+    light.own_colors = false;
+    EXPECT_EQ(drawn(red).pixels, without.pixels);
+    light.own_colors = true;
+    // There are images of colours only where something is coloured.
+    const Instance both[] = {{&red, {}}, {&plain, {}}};
+    const std::vector<ChainStep> beside = drawMeshClouds(both, kCamera, light, settings);
+    ASSERT_EQ(beside.front().colors.own.size(), 2U);
+    EXPECT_TRUE(drawMeshClouds(std::span(both).subspan(1), kCamera, light, settings).front().colors.own.empty());
   }
 }
 

@@ -363,5 +363,24 @@ TEST(Dither, KeepsTheMeanBetweenSteps) {
   EXPECT_EQ(dithered(blankImage(0, 0)).pixels.size(), 0U);
 }
 
+// Of an opaque cloud: each pixel inside its outline is the white picture's times the colour.
+TEST(Render, OwnColorsMultiplyTheCloud) {
+  BakedMesh ball = bakedBall(1, {}, 4);
+  const Camera camera{{0, 0, 5}, {0, 0, 0}, 35, 80, 60};
+  LightSettings light = lightForSun(100, 25);
+  light.samples_per_side = 1, light.view_extinction = 0;
+  const Image plain = renderLobe(ball, camera, light);
+  ball.colors.assign(ball.lobes.size(), {1, 1, 1});
+  const Image white = renderLobe(ball, camera, light);
+  for (size_t i = 0; i < plain.pixels.size(); ++i) ASSERT_LE(length(white.pixels[i] - plain.pixels[i]), 1e-5F);
+  ball.colors.assign(ball.lobes.size(), {0.9F, 0.3F, 0.1F});
+  const Image red = renderLobe(ball, camera, light);
+  const Vec3 before = plain.at(40, 30), after = red.at(40, 30);
+  EXPECT_LE(length(after - Vec3{before.x * 0.9F, before.y * 0.3F, before.z * 0.1F}), 1e-5F);
+  EXPECT_EQ(red.at(0, 0), plain.at(0, 0));
+  light.own_colors = false;
+  EXPECT_EQ(renderLobe(ball, camera, light).pixels, plain.pixels);
+}
+
 }  // namespace
 }  // namespace cloudbake
