@@ -81,6 +81,9 @@ struct Material {
   bool isWhite() const { return factor == Vec3{1, 1, 1} && !texture; }
 };
 
+// A grey is what modelling programs give to materials that nobody has set: 0.8 in Blender, 0.5 in Maya.
+bool isGrey(Vec3 color) { return color.x == color.y && color.y == color.z; }
+
 Vec3 limited(Vec3 color) {
   const auto limit = [](float x) { return x > 0 ? std::min(x, 1.0F) : 0; };
   return {limit(color.x), limit(color.y), limit(color.z)};
@@ -185,7 +188,9 @@ class ColorReader {
     const Json pbr = json.value("pbrMetallicRoughness", Json::object());
     if (const auto factor = pbr.find("baseColorFactor"); factor != pbr.end())
       material.factor = limited({factor->at(0).get<float>(), factor->at(1).get<float>(), factor->at(2).get<float>()});
-    if (const auto use = pbr.find("baseColorTexture"); use != pbr.end())
+    const auto use = pbr.find("baseColorTexture");
+    if (use == pbr.end() && isGrey(material.factor)) material.factor = {1, 1, 1};
+    if (use != pbr.end())
       material.texture = orElse(std::optional<TextureUse>(), owner + ": its texture", [&] { return std::optional(readUse(*use)); });
     return material;
   }

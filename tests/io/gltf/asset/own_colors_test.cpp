@@ -82,6 +82,8 @@ TEST(OwnColors, AreLinearFactors) {
   Painted painted;
   painted.material["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.25, 1, 1};
   expectColors(painted.colors(), std::vector<Vec3>(4, {0.5F, 0.25F, 1}));
+  painted.material["pbrMetallicRoughness"]["baseColorFactor"] = {0.8, 0.8, 0.8, 1};  // as that of a material that nobody has set
+  EXPECT_TRUE(painted.colors().empty());
 }
 
 TEST(OwnColors, OfVerticesHaveEveryTypeOfComponent) {
