@@ -82,8 +82,9 @@ TEST(OwnColors, AreLinearFactors) {
   Painted painted;
   painted.material["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.25, 1, 1};
   expectColors(painted.colors(), std::vector<Vec3>(4, {0.5F, 0.25F, 1}));
-  painted.material["pbrMetallicRoughness"]["baseColorFactor"] = {0.8, 0.8, 0.8, 1};  // as that of a material that nobody has set
-  EXPECT_TRUE(painted.colors().empty());
+  Painted unset;
+  unset.material["pbrMetallicRoughness"]["baseColorFactor"] = {0.8, 0.8, 0.8, 1};
+  EXPECT_TRUE(unset.colors().empty());
 }
 
 TEST(OwnColors, OfVerticesHaveEveryTypeOfComponent) {
@@ -162,8 +163,8 @@ TEST(OwnColors, AreWhiteWhereTheyCannotBeRead) {
   Painted cut = Painted();
   cut.setTexture();
   cut.picture.resize(cut.picture.size() / 2);
-  cut.material["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.5, 0.5, 1};
-  expectColors(cut.colors(1), std::vector<Vec3>(4, {0.5F, 0.5F, 0.5F}));
+  cut.material["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.25, 0.5, 1};
+  expectColors(cut.colors(1), std::vector<Vec3>(4, {0.5F, 0.25F, 0.5F}));
   Painted large;
   large.setTexture();
   large.picture = encodePng({1000, 1000, std::vector<Vec3>(1000000)});
