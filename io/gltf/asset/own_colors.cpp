@@ -84,6 +84,11 @@ struct Material {
 // A grey is what modelling programs give to materials that nobody has set: 0.8 in Blender, 0.5 in Maya.
 bool isGrey(Vec3 color) { return color.x == color.y && color.y == color.z; }
 
+// As the texture that keeps the UV sets of a material without one.
+bool isAllWhite(const Image& image) {
+  return std::ranges::all_of(image.pixels, [](Vec3 color) { return color == Vec3{1, 1, 1}; });
+}
+
 Vec3 limited(Vec3 color) {
   const auto limit = [](float x) { return x > 0 ? std::min(x, 1.0F) : 0; };
   return {limit(color.x), limit(color.y), limit(color.z)};
@@ -189,9 +194,10 @@ class ColorReader {
     if (const auto factor = pbr.find("baseColorFactor"); factor != pbr.end())
       material.factor = limited({factor->at(0).get<float>(), factor->at(1).get<float>(), factor->at(2).get<float>()});
     const auto use = pbr.find("baseColorTexture");
-    if (use == pbr.end() && isGrey(material.factor)) material.factor = {1, 1, 1};
     if (use != pbr.end())
       material.texture = orElse(std::optional<TextureUse>(), owner + ": its texture", [&] { return std::optional(readUse(*use)); });
+    const bool has_colors = material.texture ? !isAllWhite(*material.texture->texture.image) : use != pbr.end();
+    if (!has_colors && isGrey(material.factor)) return {};
     return material;
   }
 
