@@ -14,7 +14,6 @@ file(GLOB page_shaders CONFIGURE_DEPENDS shaders/common/*.glsl shaders/functions
 #   cloudbake_page(OUTPUT MODULE SHADER…)
 function(cloudbake_page output module)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${module} ${page_modules} ${ARGN})
-  list(FILTER ARGN EXCLUDE REGEX "/(cast_shadow|soft)\\.glsl$")  # for engines
   foreach(file ${ARGN})
     cmake_path(GET file STEM LAST_ONLY name)
     file(READ ${file} text)

@@ -1,4 +1,4 @@
-// The shaders of every page that shows clouds, compiled in for the engine kit.
+// The shaders of every page that shows clouds, and those of shaders/engines/, compiled in for the engine kit.
 #pragma once
 
 #include <span>

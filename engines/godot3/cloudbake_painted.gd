@@ -47,56 +47,13 @@ export var soft_distance = 0.0    # clouds fade in over it before solid things
 export var near_fade = Vector2()    # distances at which clouds are gone, and from which they are whole
 export var far_fade = Vector2()    # distances from which clouds fade, and at which they are gone
 
-const FAR_SIZES = @far_sizes@
-const SWIRL_NOISE = {"octaves": @swirl_octaves@, "gain": @swirl_gain@, "cells": @swirl_cells@, "typical_slope": @swirl_slope@}
-const EROSION_NOISE = {"octaves": @erosion_octaves@, "gain": @erosion_gain@, "fading": Vector2(@erosion_fading@)}
+const ALONG_ROWS = [1, 0]
+const ALONG_COLUMNS = [0, 1]
 
-var _clouds = []    # the nodes
-var _shaders = {}    # materials of the clouds, and the shaders that they have by themselves
-var _layers = {}    # nodes, and their layers
-var _cameras = {}    # cameras, and whether they saw the layer of the clouds
-var _measured = 1.0    # the clouds' size
 var _eye = Camera.new()
-var _passes = {}    # viewports by the name of what they make
 var _composite = MeshInstance.new()
 
-
-func _ready():
-	process_priority = 1000    # after everything that moves the camera
-	_eye.cull_mask = _bit()
-	_eye.environment = Environment.new()
-	var clouds = _viewport("clouds")
-	clouds.add_child(_eye)
-	_eye.current = true
-	_pass("drawn", "resolve", {"samples": "clouds"})
-
-	_pass("depths", "weighted", {"channels": "drawn", "of_depth": true})
-	_boxes("depths", "drawn", ["depth_rows", "depth_boxes"])
-	_pass("spread", "spread", {"channels": "drawn", "weighted": "depth_boxes"})
-
-	_pass("lights", "weighted", {"channels": "spread", "of_depth": false})
-	_boxes("lights", "spread", ["light_rows", "light_boxes"])
-	_boxes("light_boxes", "spread", ["light_rows2", "light_boxes2"])
-	_pass("soft", "soft", {"channels": "spread", "weighted": "light_boxes2"})
-
-	_pass("swirled", "distort", {"channels": "soft"})
-	_pass("worn", "erode", {"channels": "swirled"})
-	_make_composite()
-
-
-func _exit_tree():
-	for material in _shaders:
-		material.shader = _shaders[material]
-	for node in _layers:
-		if is_instance_valid(node):
-			node.layers = _layers[node]
-	for camera in _cameras:
-		if is_instance_valid(camera):
-			camera.cull_mask |= _cameras[camera]
-	_cameras.clear()
-	_shaders.clear()
-	_layers.clear()
-	_clouds.clear()
+#include "godot_painted.gd"
 
 
 func _process(delta):
@@ -117,10 +74,6 @@ func _process(delta):
 	_set_values(camera, picture, small)
 
 
-func _bit():
-	return 1 << (layer - 1)
-
-
 func _viewport(name):
 	var viewport = Viewport.new()
 	viewport.name = name
@@ -136,29 +89,6 @@ func _viewport(name):
 	return viewport
 
 
-# A step that fills the viewport `name` by a shader, from other viewports and from values.
-func _pass(name, shader, values):
-	var fill = ColorRect.new()
-	fill.anchor_right = 1
-	fill.anchor_bottom = 1
-	fill.material = _material(shader, values)
-	_viewport(name).add_child(fill)
-
-
-func _boxes(image, channels, names):
-	_pass(names[0], "box", {"image": image, "channels": channels, "axis": [1, 0]})
-	_pass(names[1], "box", {"image": names[0], "channels": channels, "axis": [0, 1]})
-
-
-func _material(shader, values):
-	var material = ShaderMaterial.new()
-	material.shader = _shader(shader)
-	for name in values:
-		var value = values[name]
-		material.set_shader_param(name, _passes[value].get_texture() if value is String else value)
-	return material
-
-
 func _shader(name):
 	return load(get_script().resource_path.get_base_dir() + "/painted/%s.shader" % name)
 
@@ -170,24 +100,6 @@ func _make_composite():
 	_composite.extra_cull_margin = 16384
 	_composite.cast_shadow = GeometryInstance.SHADOW_CASTING_SETTING_OFF
 	add_child(_composite)
-
-
-func _find_clouds():
-	var found = []
-	for node in get_tree().get_nodes_in_group("cloudbake"):
-		if node.get_viewport() == get_viewport():
-			found.append(node)
-	for node in found:
-		if not node in _layers:
-			_layers[node] = node.layers
-			node.layers = _bit()
-		for material in _materials_of(node):
-			if not material in _shaders:
-				_shaders[material] = material.shader
-				material.shader = _shader("channels")
-	if found != _clouds:
-		_clouds = found
-		_measured = _measure()
 
 
 func _materials_of(node):
@@ -213,63 +125,12 @@ func _measure():
 	return sum / _clouds.size() if _clouds else 1.0
 
 
-func _follow(camera):
-	_eye.global_transform = camera.get_camera_transform()
-	_eye.keep_aspect = camera.keep_aspect
-	_eye.set_perspective(camera.fov, camera.near, camera.far)
-	_composite.global_transform = _eye.global_transform
-
-
-# The phases of the swirls: the first, the second, and the weight of the second.
-func _phases():
-	var first = fposmod(time * swirl_speed, 1.0)
-	return Vector3(first, fposmod(first + 0.5, 1.0), abs(2 * first - 1))
-
-
 # How far the near and the far noise have moved, in tiles of their own.
 func _drift():
 	var cycles = time * swirl_speed
 	var near = cycles * near_drift
 	var far = cycles * far_drift * far_tiles
 	return Plane(fposmod(near.x, 1.0), fposmod(near.y, 1.0), fposmod(far.x, 1.0), fposmod(far.y, 1.0))
-
-
-func _set_values(camera, picture, small):
-	var own_size = size if size > 0 else _measured
-	var depth_range = Vector2(near_distance, far_distance if far_distance > 0 else near_distance + FAR_SIZES * own_size)
-	var origin = _clouds[0].global_transform.origin if _clouds else Vector3.ZERO
-	for material in _shaders:
-		for pair in [["depth_range", depth_range], ["painted_near_fade", near_fade], ["painted_half_lambert", half_lambert],
-				["painted_volume_gain", volume_gain]]:
-			material.set_shader_param(pair[0], pair[1])
-	_set_step("drawn", {"samples_per_side": samples_per_side})
-	for name in ["depth_rows", "depth_boxes"]:
-		_set_step(name, {"near_half": depth_spread * small.y, "far_half": depth_spread * small.y})
-	for name in ["light_rows", "light_boxes", "light_rows2", "light_boxes2"]:
-		_set_step(name, {"near_half": near_width * small.y, "far_half": far_width * small.y})
-	_set_step("swirled", {"tile_size": tile_size, "far_tiles": far_tiles, "swirl_strength": swirl_strength, "far_strength": far_strength,
-		"phases": _phases(), "drift": _drift(), "seed": noise_seed, "dark": dark})
-	_set_step("swirled", SWIRL_NOISE)
-	_set_step("worn", {"depth_range": depth_range, "noise_origin": origin, "noise_size": detail_size * own_size, "shrink": detail_shrink,
-		"darkening": detail_darkening, "seed": noise_seed})
-	_set_step("worn", EROSION_NOISE)
-	_set_step("worn", _view(camera, small))
-
-	var values = _view(camera, picture)
-	values.fog_density = fog_density
-	values.distance_fog = distance_fog
-	values.fog_color = fog_color
-	values.fog_scatter = fog_scatter
-	values.depth_range = depth_range
-	values.phase = Vector3(phase_share, phase_asymmetry, phase_limit)
-	values.soft_distance = soft_distance
-	values.far_fade = far_fade
-	if _shaders:
-		for name in ["to_sun", "sun_color", "ambient_sky", "ambient_ground"]:
-			var value = _shaders.keys()[0].get_shader_param(name)
-			if value != null:
-				values[name] = value.normalized() if name == "to_sun" else value
-	_write(_composite.material_override, values)
 
 
 # The uniforms of view.glsl for a picture that shows what the camera sees.
@@ -280,10 +141,9 @@ func _view(camera, picture):
 		"per_pixel": 2 * tan(deg2rad(camera.fov) / 2) / side}
 
 
-func _set_step(step, values):
-	_write(_passes[step].get_child(0).material, values)
+func _put(material, parameter, value):
+	material.set_shader_param(parameter, value)
 
 
-func _write(material, values):
-	for name in values:
-		material.set_shader_param(name, values[name])
+func _value_of(material, parameter):
+	return material.get_shader_param(parameter)

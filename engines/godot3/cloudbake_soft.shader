@@ -13,7 +13,7 @@ void vertex() {
 
 void fragment() {
 	float depth = 2.0 * texelFetch(DEPTH_TEXTURE, ivec2(FRAGCOORD.xy), 0).r - 1.0;
-	float solid = solidDistance(vec3(2.0 * SCREEN_UV - 1.0, depth), INV_PROJECTION_MATRIX);
+	float solid = -placeInView(vec3(2.0 * SCREEN_UV - 1.0, depth), INV_PROJECTION_MATRIX).z;
 	float opacity = fadeOf(-VERTEX.z) * fadeBetween(solid + VERTEX.z, 0.0, soft_distance) * rimOf(abs(dot(NORMAL, VIEW)), TIME);
 	if (isLeftOut(opacity, FRAGCOORD.xy)) {
 		discard;

@@ -20,13 +20,7 @@ func _ready():
 		push_error("%s: cannot be read; `cloudbake shadow` writes it beside the picture" % frame)
 		return
 	var values = JSON.parse_string(file.get_as_text())
-	_set_value("picture", picture)
-	_set_value("origin", _vector(values.origin))
-	_set_value("right_over_width", _vector(values.right) / values.width)
-	_set_value("up_over_height", _vector(values.up) / values.height)
-	_set_value("to_sun", _vector(values.to_sun))
-	_set_value("top", values.top)
-	_set_value("bottom", values.bottom)
+	_set_frame(values)
 
 
 func _process(_delta):
@@ -36,8 +30,7 @@ func _process(_delta):
 		global_transform.origin = camera.global_transform.origin
 
 
-func _vector(list):
-	return Vector3(list[0], list[1], list[2])
+#include "godot_shadow.gd"
 
 
 func _set_value(parameter, value):

@@ -26,7 +26,7 @@ import { forwardOf } from './babylon_view.js';
 import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, settingsOf, shadowValues, skyDefaults, softValues, sunDefaults,
   switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
-import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, vertexLight } from './shaders.js';
+import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, VARYINGS, vertexLight, writeVaryings } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? VertexBuffer.UVKind : `${VertexBuffer.UVKind}${n + 1}`;
@@ -47,14 +47,9 @@ uniform float is_perspective;
 #include<morphTargetsVertexDeclaration>[0..maxSimultaneousMorphTargets]
 #include<fogVertexDeclaration>
 uniform vec2 painted_place;  // of a sample in its pixel, on the screen, while PaintedClouds draws
-varying vec2 cloud_light;
-varying vec3 cloud_view;
-#ifdef SOFT
-  varying vec3 cloud_normal, cloud_place;
-#endif
+${VARYINGS}
 ${vertexLight()}
 #ifdef LAMPS
-  varying vec3 cloud_lamps;
   ${LAMPS}
 #endif
 void main() {
@@ -67,16 +62,7 @@ void main() {
   vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);
   gl_Position = viewProjection * worldPos;
   gl_Position.xy += painted_place * gl_Position.w;
-  vec4 lobe = lobeInWorld(unpackLobe(${names.join(', ')}, flipped), mat3(finalWorld));
-  vec3 facing = normalInWorld(normalUpdated, mat3(finalWorld));
-  cloud_light = lightOfVertex(lobe, facing, mat3(finalWorld));
-  #ifdef SOFT
-    cloud_normal = facing;
-    cloud_place = position;
-  #endif
-  #ifdef LAMPS
-    cloud_lamps = lampsOfVertex(lobe, worldPos.xyz, facing);
-  #endif
+  ${writeVaryings(names, 'normalUpdated', 'finalWorld', 'worldPos.xyz')}
   cloud_view = worldPos.xyz * is_perspective - eye;
   #include<fogVertex>
 }
@@ -92,18 +78,13 @@ const CLOUD_FRAGMENT = `
 precision highp float;
 precision highp int;
 #include<fogFragmentDeclaration>
-varying vec2 cloud_light;
-varying vec3 cloud_view;
+${VARYINGS}
 ${PIXEL_COLOR}
 ${TONE}
 ${CHANNELS}
 uniform vec2 painted_range;  // of depth, while PaintedClouds draws
 uniform vec3 forward;
-#ifdef LAMPS
-  varying vec3 cloud_lamps;
-#endif
 #ifdef SOFT
-  varying vec3 cloud_normal, cloud_place;
   ${SOFT}
   uniform float has_solid;
   uniform highp sampler2D solid_depth;  // distances along the view's axis

@@ -61,6 +61,32 @@ vec3 colorOfPixel(vec2 light, vec3 view) {
 }
 `;
 
+// What pixels get from the vertices.
+export const VARYINGS = `
+varying vec2 cloud_light;
+varying vec3 cloud_view;
+#ifdef SOFT
+  varying vec3 cloud_normal, cloud_place;
+#endif
+#ifdef LAMPS
+  varying vec3 cloud_lamps;
+#endif
+`;
+
+// All of it but cloud_view, from the names of the two UV sets and the GLSL for the normal of the mesh and, in the world, matrix and place.
+export const writeVaryings = (sets, normal, matrix, place) => `
+  vec4 lobe = lobeInWorld(unpackLobe(${sets.join(', ')}, flipped), mat3(${matrix}));
+  vec3 facing = normalInWorld(${normal}, mat3(${matrix}));
+  cloud_light = lightOfVertex(lobe, facing, mat3(${matrix}));
+  #ifdef SOFT
+    cloud_normal = facing;
+    cloud_place = position;
+  #endif
+  #ifdef LAMPS
+    cloud_lamps = lampsOfVertex(lobe, ${place}, facing);
+  #endif
+`;
+
 // The light of LAMPS lamps.
 export const LAMPS = `
 #include "lamp.glsl"

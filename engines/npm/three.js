@@ -4,7 +4,8 @@ import { Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, LOD, LinearFi
 import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, settingsOf, skyDefaults, shadowValues, softValues, sunDefaults,
   switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
-import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, harmonicNames, vertexLight } from './shaders.js';
+import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, VARYINGS, harmonicNames, vertexLight,
+  writeVaryings } from './shaders.js';
 import { SOLID_DISTANCE } from './three_depth.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
@@ -18,14 +19,9 @@ const cloudVertex = (names, order) => `
 #include <skinning_pars_vertex>
 #include <logdepthbuf_pars_vertex>
 ${names.filter(name => name !== 'uv').map(name => `attribute vec2 ${name};`).join('\n')}
-varying vec2 cloud_light;
-varying vec3 cloud_view;
-#ifdef SOFT
-  varying vec3 cloud_normal, cloud_place;
-#endif
+${VARYINGS}
 ${vertexLight(order)}
 #ifdef LAMPS
-  varying vec3 cloud_lamps;
   ${LAMPS}
 #endif
 void main() {
@@ -52,16 +48,7 @@ void main() {
     mat4 blend = skinWeight.x * boneMatX + skinWeight.y * boneMatY + skinWeight.z * boneMatZ + skinWeight.w * boneMatW;
     to_world *= bindMatrixInverse * blend * bindMatrix;
   #endif
-  vec4 lobe = lobeInWorld(unpackLobe(${names.join(', ')}, flipped), mat3(to_world));
-  vec3 facing = normalInWorld(objectNormal, mat3(to_world));
-  cloud_light = lightOfVertex(lobe, facing, mat3(to_world));
-  #ifdef SOFT
-    cloud_normal = facing;
-    cloud_place = position;
-  #endif
-  #ifdef LAMPS
-    cloud_lamps = lampsOfVertex(lobe, place, facing);
-  #endif
+  ${writeVaryings(names, 'objectNormal', 'to_world', 'place')}
   cloud_view = isOrthographic ? -vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]) : place - cameraPosition;
 }
 `;
@@ -80,17 +67,12 @@ const CLOUD_FRAGMENT = `
 #include <dithering_pars_fragment>
 #include <fog_pars_fragment>
 #include <logdepthbuf_pars_fragment>
-varying vec2 cloud_light;
-varying vec3 cloud_view;
+${VARYINGS}
 ${PIXEL_COLOR}
 ${TONE}
 ${CHANNELS}
 uniform vec2 painted_range;  // of depth, while PaintedClouds draws
-#ifdef LAMPS
-  varying vec3 cloud_lamps;
-#endif
 #ifdef SOFT
-  varying vec3 cloud_normal, cloud_place;
   ${SOFT}
   ${SOLID_DISTANCE}
   uniform highp sampler2D solid_depth;

@@ -1,4 +1,4 @@
-// Where the picture of a cloud's shadow lies in the world. shaders/functions/cast_shadow.glsl is the same in GLSL.
+// Where the picture of a cloud's shadow lies in the world. shaders/engines/cast_shadow.glsl is the same in GLSL.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Evaluates the functions of shaders/functions/, and the HLSL that the engine kit makes of them, in WebGL2 and compares them, value by
+// Evaluates the functions of shaders/functions/ and shaders/engines/, and the HLSL that the engine kit makes of them, in WebGL2 and compares them, value by
 // value, with what the C++ gives.
 //   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER CLOUDBAKE
 import { execFileSync } from 'node:child_process';
@@ -11,7 +11,7 @@ import { requireTranslators, translated } from './hlsl.mjs';
 requireTranslators();
 const { binary, source: source_folder, folder } = testFolder();
 const { structs, functions } = JSON.parse(execFileSync(binary, [folder]));
-const glslFile = name => readFileSync(['shaders/functions', 'shaders/functions/layers'].map(place =>
+const glslFile = name => readFileSync(['shaders/functions', 'shaders/functions/layers', 'shaders/engines'].map(place =>
   join(source_folder, place, `${name}.glsl`)).find(existsSync), 'utf8').replace(/^struct (\w+);$/gm, (_, struct) => structs[struct]);
 
 // The HLSL of the kit, and the files of GLSL that it is made of.

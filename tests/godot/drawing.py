@@ -188,7 +188,7 @@ def is_cloud(linear):
 
 
 def fade_between(x, start, end):
-    """fadeBetween of shaders/functions/soft.glsl."""
+    """fadeBetween of shaders/engines/soft.glsl."""
     if start == end:
         return np.where(x < start, 0.0, 1.0)
     t = np.clip((x - start) / (end - start), 0, 1)

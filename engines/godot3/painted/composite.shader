@@ -8,7 +8,7 @@ void vertex() {
 void fragment() {
 	ivec2 at = ivec2(FRAGCOORD.xy);
 	float depth = 2.0 * texelFetch(DEPTH_TEXTURE, at, 0).r - 1.0;
-	vec4 p = visibleChannels(at, solidDistance(vec3(2.0 * SCREEN_UV - 1.0, depth), INV_PROJECTION_MATRIX));
+	vec4 p = visibleChannels(at, -placeInView(vec3(2.0 * SCREEN_UV - 1.0, depth), INV_PROJECTION_MATRIX).z);
 	ALBEDO = cloudsColor(p, at);
 	ALPHA = p.z;
 }
