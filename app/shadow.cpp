@@ -22,8 +22,12 @@ ExitCode runShadow(const CommandLine& line) {
   const ShadowPicture picture = namingFile(report.input, [&] { return drawShadow(mesh, settings); });
   watch.lap(report.seconds, "draw");
   const ShadowFiles files = encodeShadow(picture);
-  writeFileAtomically(shadowFrameFile(settings.output.file), files.frame);
-  writeFileAtomically(settings.output.file, files.png);
+  // Both are written before one is replaced: a disk that is full must not leave a frame of another picture.
+  PendingFile frame(shadowFrameFile(settings.output.file)), png(settings.output.file);
+  frame.write(files.frame);
+  png.write(files.png);
+  frame.commit();
+  png.commit();
   report.output = settings.output.file.string();
   watch.lap(report.seconds, "write");
   tellReport(settings.run, report, {{"frame", Json::parse(files.frame)}}, "wrote       " + shadowFrameFile(report.output).string() + "\n");

@@ -1,5 +1,5 @@
-// Evaluates the functions of shaders/functions/ and shaders/engines/, and the HLSL that the engine kit makes of them, in WebGL2 and compares them, value by
-// value, with what the C++ gives.
+// Evaluates the functions of shaders/functions/ and shaders/engines/, and the HLSL that the engine kit makes of them, in WebGL2 and
+// compares them, value by value, with what the C++ gives.
 //   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER CLOUDBAKE
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
