@@ -4,8 +4,9 @@ import { add, clamp } from './vectors.js';
 
 export const CHANNELS = ['sun', 'sky', 'opacity', 'depth'];
 
-// What two of the channels are, as a prefix of the names of targets: the light of sun and sky, and that of lamps: red and green, then blue.
-export const SHOWN = ['', 'red green ', 'blue '];
+// What two of the channels are, as a prefix of the names of targets: the light of sun and sky, and that of lamps: red and green, then blue;
+// and the clouds' own colours.
+export const LAMPS = ['red green ', 'blue '], OWN = ['own red green ', 'own blue '], SHOWN = ['', ...LAMPS, ...OWN];
 
 const NOTHING = [0, 0, 0, 0];
 
@@ -49,10 +50,14 @@ function erode(renderer, channels, to) {
     { ...view, ...settings, noise_origin: add(origin, wind, view.time), noise_size: longest * share, seed, shrink, channels });
 }
 
-function downsample(renderer, channels, to) {
-  const { gpu, view, look: { chain: { divisor } } } = renderer, size = [gpu.size.width, gpu.size.height].map(x => Math.ceil(x / divisor));
+function resample({ gpu, view }, channels, to, size) {
   const target = gpu.target(to, { width: size[0], height: size[1] });
   gpu.fill([target], gpu.program('downsample.frag', ['channel_sum']), { ...view, channels, size });
+}
+
+function downsample(renderer, channels, to) {
+  const { gpu: { size: { width, height } }, look: { chain: { divisor } } } = renderer;
+  resample(renderer, channels, to, [width, height].map(x => Math.ceil(x / divisor)));
 }
 
 function blur(renderer, channels, to) {
@@ -75,16 +80,37 @@ export const STEPS = {
   plain: {},
 };
 
+// For own colours: nothing darkens them, and no black of a pixel's rest bleeds into them: stepsOfColors of preview/mesh_clouds/.
+function ofColors(renderer) {
+  const { view, look, look: { chain, chain: { distort, erode } } } = renderer;
+  return Object.assign(Object.create(renderer), {
+    view: { ...view, mean_all: false },
+    look: { ...look, chain: { ...chain, distort: { ...distort, dark: 1 }, erode: { ...erode, darkening: 0 } } },
+  });
+}
+
+// Channels of the picture's size with own colours.
+function atFullSize(renderer, channels) {
+  const { gpu, gpu: { size: { width, height } } } = renderer, own = gpu.targets[channels];
+  if (own.width === width && own.height === height) return channels;
+  resample(ofColors(renderer), channels, `full ${channels}`, [width, height]);
+  return `full ${channels}`;
+}
+
 // The colours of the clouds, over the sky or as a layer.
-function composite({ gpu, view, look, scene, shown }, channels) {
+function composite(renderer, channels) {
+  const { gpu, view, look, scene, shown } = renderer;
   const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view, distance_fog = scene.distance_fog * fog;
   const values = {
     ...view, to_sun: view.to_light, sun_color: view.light_color, fog_density: fog_density * fog, distance_fog,
     fog_scatter: scene.fog_scatter,
     phase: [clamp(share * shine, 0, 1), ...phase], channels, drawn: 'drawn', background: 'background',
-    has_lamps: shown.length > 1, lamps_red_green: (shown[1] ?? '') + channels, lamps_blue: (shown[2] ?? '') + channels,
   };
-  const files = ['light', 'sky', 'view', 'sky_uniforms', 'channel_sum', 'composite', 'composite_lamps'];
+  const [has_lamps, has_own] = [LAMPS, OWN].map(([first]) => shown.includes(first));
+  const [lamps_red_green, lamps_blue] = LAMPS.map(light => (has_lamps ? light + channels : channels));
+  const [own_red_green, own_blue] = OWN.map(light => (has_own ? atFullSize(renderer, light + channels) : channels));
+  Object.assign(values, { has_lamps, lamps_red_green, lamps_blue, has_own, own_red_green, own_blue });
+  const files = ['light', 'sky', 'view', 'sky_uniforms', 'channel_sum', 'composite', 'composite_lamps', 'own_color'];
   if (!scene.layers) {
     gpu.fill([], gpu.program('composite.frag', ['tone', ...files]), values);
     return;
@@ -98,7 +124,7 @@ export function drawChain(renderer) {
   const { gpu, look, view } = renderer, channel = CHANNELS.indexOf(view.show);
   let channels = 'drawn', shown = 'drawn';
   for (const [name, step] of Object.entries(STEPS[look.kind])) {
-    for (const light of renderer.shown) step(renderer, light + channels, light + name);
+    for (const light of renderer.shown) step(OWN.includes(light) ? ofColors(renderer) : renderer, light + channels, light + name);
     channels = name;
     if (view.show === 'picture' || view.show === name) shown = name;
   }

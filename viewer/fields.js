@@ -73,6 +73,10 @@ export class Fields {
       this.point(name, size, 4 * size, 0);
     }
     for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(LIT_BY.length + i, 0, 0, 0, 0);  // of coefficients that there are not
+    if (arrays.colors?.length) {
+      this.fill(gl.ARRAY_BUFFER, arrays.colors);
+      this.point('own', 3, 12, 0);
+    }
     const coefficients = arrays.harmonicsPerVertex;
     if (coefficients) this.fill(gl.ARRAY_BUFFER, arrays.harmonics);
     for (let i = 0; i < coefficients / 4; ++i) this.point(`harmonics_${i}`, 4, 4 * coefficients, 16 * i);
@@ -153,7 +157,8 @@ export class Fields {
     const known = light => light.startsWith('harmonics') ? 'harmonics' : light === 'none' ? light : 'lobe';
     const lit = { ...view, light: known(view.light), against: known(view.against) };
     const values = { ...view, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place, shown) };
-    const program = this.gpu.program(fragment, ['channels'], 'field.vert', ['lobe', 'harmonics', 'lamp', 'lamps']);
+    const program = this.gpu.program(fragment, ['channels'], 'field.vert',
+      ['lobe', 'harmonics', 'lamp', 'lamps', 'own_channels']);
     gl.bindVertexArray(this.meshes);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);
     for (const { part, first, count } of this.groups) {

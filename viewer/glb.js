@@ -1,5 +1,6 @@
 // A baked GLB that is dropped on the page, as a scene: docs/asset_format.md.
 
+import { ownColors, ownMaterials } from './own_colors.js';
 import { packedTriangles } from './packed_mesh.js';
 import { add, cross, dot } from './vectors.js';
 
@@ -119,17 +120,19 @@ function volumeOf({ view_extinction = 1, phase: asymmetry = 0, octaves = 0, octa
 
 // The meshes of a file, in the space of its scene, one after the other.
 class MeshCollector {
-  constructor(reader, { uv_sets, harmonic_order }) {
+  constructor(reader, { uv_sets, harmonic_order }, materials) {
     this.reader = reader;
+    this.materials = materials;
     this.sets = uv_sets.map(n => `TEXCOORD_${n}`);
     this.harmonicsPerVertex = harmonic_order > 0 ? Math.ceil((harmonic_order + 1) ** 2 / 4) * 4 : 0;
     this.coefficients = Array.from({ length: this.harmonicsPerVertex / 4 }, (_, i) => `_TRANSMITTANCE_SH_${i}`);
-    this.all = { positions: [], normals: [], lobes: [], harmonics: [], triangles: [] };
+    this.all = { positions: [], normals: [], lobes: [], colors: [], harmonics: [], triangles: [] };
   }
 
   get vertices() { return this.all.positions.length / 3; }
 
-  add({ attributes, indices, mode = 4 }, matrix) {
+  add(primitive, matrix) {
+    const { attributes, indices, mode = 4 } = primitive;
     if (mode !== 4) throw new Error('The GLB has primitives that are not lists of triangles: open it with `cloudbake view`.');
     const missing = ['POSITION', ...this.sets, ...this.coefficients].find(key => attributes[key] === undefined);
     if (missing) throw new Error(`A mesh of the GLB has no ${missing}: an optimiser dropped it, or it was never baked.`);
@@ -138,6 +141,7 @@ class MeshCollector {
     const normals = attributes.NORMAL === undefined ? computedNormals(positions, triangles) : reader.read(attributes.NORMAL, 'normals');
     const columns = columnsOf(matrix), mirrored = dot(cross(columns[0], columns[1]), columns[2]) < 0 ? -1 : 1, first = this.vertices;
     this.addHarmonics(attributes, vertices);
+    for (const value of ownColors(reader, primitive, vertices, this.materials)) this.all.colors.push(value);
     this.addVertices(matrix, positions, normals, this.sets.map(key => reader.read(attributes[key], 'lobes')), mirrored);
     for (let t = 0; t < triangles.length; t += 3) {
       const [a, b, c] = triangles.subarray(t, t + 3);
@@ -177,13 +181,14 @@ class MeshCollector {
     const { all, vertices } = this, floats = name => Float32Array.from(all[name]);
     return {
       positions: floats('positions'), normals: floats('normals'), lobes: floats('lobes'), harmonics: floats('harmonics'),
+      colors: all.colors.every(x => x === 1) ? new Float32Array(0) : floats('colors'),
       compared: new Float32Array(0), harmonicsPerVertex: this.harmonicsPerVertex, triangles: packedTriangles(all.triangles, vertices),
     };
   }
 }
 
-function readMeshes(reader, constants) {
-  const meshes = new MeshCollector(reader, constants);
+function readMeshes(reader, constants, materials) {
+  const meshes = new MeshCollector(reader, constants, materials);
   reader.forMeshes(({ primitives }, matrix) => { for (const primitive of primitives) meshes.add(primitive, matrix); });
   if (!meshes.all.triangles.length) throw new Error('The GLB has no triangles.');
   if (!meshes.all.triangles.every(v => v < meshes.vertices))
@@ -200,8 +205,9 @@ function settingsOf(scene) {
   return structuredClone(settings);
 }
 
-function readScene(buffer, name, like) {
-  const reader = new GlbReader(buffer), constants = constantsOf(reader.info), meshes = readMeshes(reader, constants);
+async function readScene(buffer, name, like, note) {
+  const reader = new GlbReader(buffer), constants = constantsOf(reader.info);
+  const meshes = readMeshes(reader, constants, await ownMaterials(reader, note));
   const [low, high] = meshes.box(), size = add(high, low, -1), longest = Math.max(...size) || 1, { harmonicsPerVertex } = meshes;
   if (![...low, ...high].every(Number.isFinite)) throw new Error('The GLB is damaged: a position is not finite.');
   const extinction = constants.extinction > 0 ? constants.extinction : like.extinction_times_size / longest;
@@ -221,10 +227,13 @@ function readScene(buffer, name, like) {
   };
 }
 
-/** A baked GLB as a scene of the page: what is not the cloud's own is as in `like`. @param {Scene} like @returns {Scene} */
-export function sceneOfGlb(buffer, name, like) {
+/**
+ * A baked GLB as a scene of the page: what is not the cloud's own is as in `like`. `note` takes sentences about what is not shown.
+ * @param {Scene} like @param {(text: string) => void} note @returns {Promise<Scene>}
+ */
+export async function sceneOfGlb(buffer, name, like, note = () => {}) {
   try {
-    return readScene(buffer, name, like);
+    return await readScene(buffer, name, like, note);
   } catch (error) {
     if (error.constructor === Error) throw error;
     throw new Error(`The GLB is damaged, or too large for this page (${error.name}: ${error.message}).`, { cause: error });

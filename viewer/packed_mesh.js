@@ -66,11 +66,11 @@ class MeshReader {
 const sum = (parts, key) => parts.reduce((all, part) => all + part[key], 0);
 
 // The arrays of all parts, from those of the stored ones: the others are copies, turned, moved and scaled.
-function withCopies(parts, stored, { positions, normals, lobes, triangles }) {
-  if (stored.length === parts.length) return { positions, normals, lobes, triangles };
+function withCopies(parts, stored, { positions, normals, lobes, colors, triangles }) {
+  if (stored.length === parts.length) return { positions, normals, lobes, colors, triangles };
   const vertices = sum(parts, 'vertices'), all = {
     positions: new Float32Array(3 * vertices), normals: new Float32Array(3 * vertices), lobes: new Float32Array(4 * vertices),
-    triangles: new Uint32Array(sum(parts, 'count')),
+    colors: new Float32Array(colors.length && 3 * vertices), triangles: new Uint32Array(sum(parts, 'count')),
   };
   const from = new Map();
   let vertex = 0, index = 0;
@@ -93,6 +93,7 @@ function withCopies(parts, stored, { positions, normals, lobes, triangles }) {
     turn(normals, all.normals, 3, 1 / scale, [0, 0, 0]);
     turn(lobes, all.lobes, 4, 1 / scale, [0, 0, 0]);
     for (let v = 0; v < part.vertices; ++v) all.lobes[4 * (part.first_vertex + v) + 3] = scale * lobes[4 * (at.vertex + v) + 3];
+    if (colors.length) all.colors.set(colors.subarray(3 * at.vertex, 3 * (at.vertex + part.vertices)), 3 * part.first_vertex);
     for (let i = 0; i < part.count; ++i)
       all.triangles[part.first + i] = triangles[at.index + i] - source.first_vertex + part.first_vertex;
   }
@@ -111,11 +112,12 @@ function takeLayers(reader, { moon_picture, lattices }) {
 }
 
 /** @param {Scene | ScatteredClouds} scene @returns {Promise<Arrays>} */
-export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, fields, layers, data }, parts }) {
+export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, layers, data }, parts }) {
   const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {
     positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),
     lobes: reader.takeLobes(lobes), compared: reader.takeLobes(compared),
+    colors: reader.take(Float32Array, is_colored ? 3 * reader.vertices : 0),
     harmonics: reader.take(Float32Array, harmonics * reader.vertices), harmonicsPerVertex: harmonics,
     triangles: reader.takeWhole(sum(stored, 'count'), 1), fields: fields.map(cells => reader.take(Uint8Array, cells)),
   };

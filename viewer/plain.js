@@ -38,19 +38,21 @@ export function drawPlainSample(renderer, place) {
 function drawSurfaces(renderer, place, offset) {
   const { gpu, vertices, look, scene, view } = renderer, { gl, size } = gpu, { first_surface = false } = look;
   const view_extinction = look.view_extinction * scene.parts[0].extinction * view.density;
-  const values = { ...view, signs: 'signs', surface: 'surface', view_extinction, first_surface };
+  const values = { ...view, signs: 'signs', surface: 'surface', own: 'own', view_extinction, first_surface };
   drawSigns(renderer, place);
-  for (const name of ['color 0', 'color 1', 'entry 0', 'entry 1']) gpu.target(name);
+  for (const name of ['color', 'entry', 'entry own']) for (const i of [0, 1]) gpu.target(`${name} ${i}`);
   const depths = [0, 1].map(i => gpu.target(`layer depth ${i}`, size, gl.DEPTH_COMPONENT32F));
   gpu.drawTo([], depths[1]);
   gl.clearBufferfv(gl.DEPTH, 0, [0]);
   const count = mostSurfaces(renderer);
   for (let i = 0; i < count; ++i) {
     const from = (i + 1) % 2, to = i % 2;
-    gpu.drawNearest([gpu.target('surface')], depths[to],
-      () => vertices.draw('surface.frag', view, size, place, { nearer: depths[from].name }));
-    renderer.fillBox([gpu.target(`color ${to}`), gpu.target(`entry ${to}`)], gpu.program('layer.frag', ['light']),
-      { ...values, sun_color: view.light_color, colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
+    gpu.drawNearest(['surface', 'own'].map(name => gpu.target(name)), depths[to],
+      () => vertices.draw('surface.frag', view, size, place, { nearer: depths[from].name, has_own: renderer.hasOwnColors }));
+    renderer.fillBox(['color', 'entry', 'entry own'].map(name => gpu.target(`${name} ${to}`)), gpu.program('layer.frag', ['light']), {
+      ...values, sun_color: view.light_color, is_first: i === 0,
+      colors: `color ${from}`, entries: `entry ${from}`, entry_owns: `entry own ${from}`,
+    });
   }
   renderer.fillBox([gpu.target('sample')], gpu.program('plain_sample.frag', ['sky', 'view', 'sky_uniforms']),
     { ...values, color: `color ${(count + 1) % 2}`, is_empty: count === 0, offset });

@@ -6,11 +6,11 @@ export const LIT_BY = [
   ['seen', 'seen', 2], ['latticed', 'latticed', 2],
 ];
 const LIT_NAMES = [...LIT_BY.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)];
-// What field.vert reads besides harmonics, in places that light.vert does not use.
+// What field.vert reads besides harmonics and own colours, in places that light.vert does not use.
 const FIELD_NAMES = ['mesh_position', 'mesh_normal', 'mesh_lobe', 'cloud_place', 'cloud_light'];
 /** @type {Record<string, number>} */
 export const LOCATIONS = {
-  position: 0, light: 1, ...Object.fromEntries(LIT_NAMES.map((name, index) => [name, index])),
+  position: 0, light: 1, own: 2, ...Object.fromEntries(LIT_NAMES.map((name, index) => [name, index])),
   ...Object.fromEntries(FIELD_NAMES.map((name, index) => [name, LIT_NAMES.length + index])),
 };
 

@@ -1,6 +1,6 @@
 // The looks of `preview` in WebGL2. A picture is drawn sample by sample and is final once every pixel has all of them.
 
-import { CHANNELS, SHOWN, drawChain } from './chains.js';
+import { CHANNELS, LAMPS, OWN, SHOWN, drawChain } from './chains.js';
 import { Fields } from './fields.js';
 import { drawPlainSample } from './plain.js';
 import { Vertices } from './vertices.js';
@@ -73,10 +73,16 @@ export class Renderer {
   // Whether the picture is composed of layers; single channels and the error are of the clouds alone.
   get isLayered() { return !!this.layers && this.view.show !== 'error' && !CHANNELS.includes(this.view.show); }
 
-  // The lights that are drawn and go through the chain: those of lamps only while one shines.
+  // The lights and colours that are drawn and go through the chain: those of lamps only while one shines.
   get shown() {
-    const { view: { lamp_count, show }, look } = this;
-    return lamp_count && look.chain && show !== 'error' && !CHANNELS.includes(show) ? SHOWN : SHOWN.slice(0, 1);
+    const { view: { lamp_count, show }, look } = this, [light] = SHOWN;
+    if (!look.chain || show === 'error' || CHANNELS.includes(show)) return [light];
+    return [light, ...(lamp_count ? LAMPS : []), ...(this.hasOwnColors ? OWN : [])];
+  }
+
+  get hasOwnColors() {
+    const { look, scene: { arrays, scattered } } = this;
+    return look.own_colors && [arrays, scattered?.arrays].some(one => one?.colors?.length);
   }
 
   get hasClouds() { return !!this.fields || this.scene.parts.some(part => part.count); }
@@ -118,9 +124,9 @@ export class Renderer {
       const place = look.samples[this.samples].map(x => x * fineness), pixel = place.map(Math.floor);
       const in_pixel = place.map((x, i) => x - pixel[i]);
       const from = `sums ${this.samples % 2}`, to = `sums ${(this.samples + 1) % 2}`;
-      for (const [shown, light] of this.shown.entries()) {
+      for (const light of this.shown) {
         if (look.kind === 'plain') drawPlainSample(this, in_pixel);
-        else this.drawSurface(in_pixel, { width: size.width * fineness, height: size.height * fineness }, shown);
+        else this.drawSurface(in_pixel, { width: size.width * fineness, height: size.height * fineness }, SHOWN.indexOf(light));
         this.fillBox([gpu.target(light + to, size)], gpu.program('accumulate.frag'),
           { sums: light + from, samples: 'sample', share: 1 / all, fineness, pixel: [pixel[0], fineness - 1 - pixel[1]] }, [0, 0, 0, 0]);
       }

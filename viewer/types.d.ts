@@ -33,6 +33,7 @@ interface ScatteredClouds { fields: Field[]; parts: Part[]; casters: Omit<Caster
 
 interface Arrays {
   positions: Float32Array; normals: Float32Array; lobes: Float32Array; compared: Float32Array;
+  colors?: Float32Array;  // own ones of the clouds, linear red, green and blue; empty: all are white
   harmonics: Float32Array; harmonicsPerVertex: number;
   triangles: Uint16Array | Uint32Array;
   fields?: Uint8Array[];
@@ -96,7 +97,7 @@ interface Scene {
 
 interface Look {
   kind: 'painted' | 'published' | 'plain';
-  half_lambert: number; half_lambert_sky: number; volume_gain: number; view_extinction?: number; first_surface?: boolean;
+  half_lambert: number; half_lambert_sky: number; volume_gain: number; own_colors: boolean; view_extinction?: number; first_surface?: boolean;
   colors: { heights: number[]; colors: Record<string, Row[]> };
   sky_places: [number, number][]; samples: [number, number][];
   chain?: any;

@@ -62,11 +62,13 @@ export class Vertices {
     for (const [key, name, size] of LIT_BY) if (arrays[key]?.length) this.setAttribute(name, size, arrays[key]);
     for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(LIT_BY.length + i, 0, 0, 0, 0);  // of coefficients that there are not
     gl.vertexAttrib1f(LOCATIONS.sun_share, 1);  // of clouds in nobody's shadow
+    gl.vertexAttrib3f(LOCATIONS.own, 1, 1, 1);  // of white clouds
     if (arrays.harmonicsPerVertex) this.setHarmonics(arrays);
     this.drawn = gl.createVertexArray();
     if (scene.lamps) this.setAttribute('mesh_position', 3, arrays.positions);
     gl.bindVertexArray(this.drawn);
     this.setAttribute('position', 3, arrays.positions);
+    if (arrays.colors?.length) this.setAttribute('own', 3, arrays.colors);
     const dark = new Float32Array(4 * arrays.positions.length / 3);
     this.setAttribute('light', 4, dark);
     if (scene.lamps) {
@@ -225,10 +227,11 @@ export class Vertices {
   // The clouds as triangles; `place`: of the sample in the pixel; `shown`: SHOWN of chains.js.
   draw(fragment, view, size, place, values = {}, shown = 0) {
     const { gl } = this.gpu, { arrays, arrays: { triangles } } = this.scene, type = indexType(gl, arrays);
-    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert'), { ...view, ...values, ...sampleOf(view, size, place, shown) });
+    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert', ['own_channels']), { ...view, ...values, ...sampleOf(view, size, place, shown) });
     gl.bindVertexArray(this.drawn);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[shown ? 'lamps' : 'light']);
-    gl.vertexAttribPointer(LOCATIONS.light, shown ? 2 : 4, gl.FLOAT, false, 16, shown === 2 ? 8 : 0);
+    const of_lamps = shown === 1 || shown === 2;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[of_lamps ? 'lamps' : 'light']);
+    gl.vertexAttribPointer(LOCATIONS.light, of_lamps ? 2 : 4, gl.FLOAT, false, 16, shown === 2 ? 8 : 0);
     gl.bindBuffer(gl.ARRAY_BUFFER, null);
     for (const [first, count] of this.rangesIn(view)) gl.drawElements(gl.TRIANGLES, count, type, first * triangles.BYTES_PER_ELEMENT);
     gl.bindVertexArray(null);

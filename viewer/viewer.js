@@ -71,7 +71,8 @@ export class Viewer {
     const refusals = [];
     for (const file of files) {
       try {
-        const scene = sceneOfGlb(await file.arrayBuffer(), file.name.replace(/\.glb$/i, ''), this.scene);
+        const scene = await sceneOfGlb(await file.arrayBuffer(), file.name.replace(/\.glb$/i, ''), this.scene,
+          text => refusals.push(`${file.name}: ${text}`));
         if (scene.keys) ownLooks(scene, this.page.looks, this.page.looks);
         this.dropped.push(scene);
         this.showScene(this.page.scenes.push(scene) - 1, scene);

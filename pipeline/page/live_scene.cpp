@@ -147,6 +147,7 @@ Json lookJson(const std::string& kind, const PostSettings& post, const LightSett
                {"half_lambert", shortest(light.half_lambert)},
                {"half_lambert_sky", shortest(light.half_lambert_sky)},
                {"volume_gain", shortest(light.volume_gain)},
+               {"own_colors", light.own_colors},
                {"colors", colorTable(suns.heights, colorsOf(suns, post, light.sky.ramp))}};
   look["sky_places"] = jsonOf(pixelPlaces(post.sky_samples_per_side));
   if (kind == "plain") {
@@ -200,7 +201,7 @@ class PageKeys {
 };
 
 // The keys of sky, light, fog and chain; those of the layers are beside the layers.
-Json keysJson(const SceneFile& scene, bool has_simple_disc) {
+Json keysJson(const SceneFile& scene, bool has_simple_disc, bool are_colored) {
   PageKeys all;
   if (!scene.camera_path) {
     all.add("camera", viewKeys(), {{"fov", {"scene", "camera", "fov"}}});
@@ -216,6 +217,7 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
   for (const char* name : {"horizon_exponent", "horizon_strength", "viewer_height"}) all.add("sky", skyKeys(), {{name, sky(name)}});
   if (scene.light.sky.horizon_color) all.add("sky", skyKeys(), {{"horizon_color", sky("horizon_color")}});
   for (const char* name : {"half_lambert", "half_lambert_sky", "volume_gain"}) all.add("light", lightKeys(), {{name, {"look", name}}});
+  if (are_colored) all.add("light", lightKeys(), {{"own_colors", {"look", "own_colors"}}});
   all.add("light", shadowKeys(),
           {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
   const auto addLamp = [&](const char* table, const auto& keys, size_t index, std::initializer_list<const char*> names) {
@@ -316,11 +318,12 @@ struct Meshes {
   std::map<const BakedMesh*, std::pair<size_t, Affine>> firsts;  // the part that is stored, and its place
   std::vector<Vec3> normals;
   Lobes lobes, compared;
+  std::vector<float> colors;  // own ones: red, green and blue per vertex
   std::vector<float> harmonics;
   std::vector<uint32_t> triangles;
   std::vector<const ShadowCaster*> casters;
   int harmonic_order = 0;  // the largest of all clouds
-  bool compares = false;
+  bool compares = false, are_colored = false;
   Json parts = Json::array(), corners = Json::array();
 };
 
@@ -409,6 +412,8 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
     part.update(all.packer.addPositions(placed.positions));
     all.normals.insert(all.normals.end(), placed.normals.begin(), placed.normals.end());
     all.lobes.append(placed.lobes);
+    if (all.are_colored)
+      for (const Vec3& own : ownColors(*instance.mesh)) all.colors.insert(all.colors.end(), {own.x, own.y, own.z});
     for (const Triangle& t : placed.triangles)
       for (const uint32_t v : t) all.triangles.push_back(first + v);
   }
@@ -456,6 +461,7 @@ Meshes meshesOf(std::span<const Instance> instances, const Scenery& scenery) {
   };
   for (const auto& [own, compared] : scenery.compared) useOrderOf(compared);
   for (const Instance& instance : instances) useOrderOf(*instance.mesh);
+  all.are_colored = std::ranges::any_of(instances, [](const Instance& one) { return !one.mesh->colors.empty(); });
   for (const Instance& instance : instances) appendWithLevels(all, instance, scenery);
   return all;
 }
@@ -472,6 +478,8 @@ Json meshJson(Meshes& meshes, const SceneFile* layered) {
   Json json = {
       {"vertices", meshes.vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
   if (meshes.compares) json["compared"] = lobesJson(packer, meshes.compared);
+  json["is_colored"] = meshes.are_colored;
+  packer.addRounded(meshes.colors);
   packer.addFloats(meshes.harmonics);
   json["harmonics"] = meshes.harmonics.size() / std::max<size_t>(1, meshes.vertices);
   packer.addTriangles(meshes.triangles);
@@ -573,11 +581,12 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["mesh"] = meshJson(meshes, isLayered(file) ? &file : nullptr);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
-  if (hasMeshClouds(file) || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);
+  if (!scenery.fields.empty()) scene["scattered"] = scatteredJson(scenery);
+  const bool are_colored = meshes.are_colored || (!scenery.fields.empty() && scene["scattered"]["mesh"]["is_colored"]);
+  if (hasMeshClouds(file) || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc, are_colored);
   if (isLayered(file)) scene["layers"] = layersJson(scenery, suns.heights, suns.scenes);
   for (const DrawnField& field : scenery.fields)
     for (int i = 0; i < 8; ++i) meshes.corners.push_back(jsonOf(boxOf(field).corner(i)));
-  if (!scenery.fields.empty()) scene["scattered"] = scatteredJson(scenery);
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);
   return {std::move(scene), looksOf(file, suns)};

@@ -114,11 +114,6 @@ std::vector<Vec3> lightOfLamps(const Instance& instance, std::span<const Vec3> n
   return sums;
 }
 
-// The own colour of each vertex.
-std::vector<Vec3> ownColors(const BakedMesh& mesh) {
-  return mesh.colors.empty() ? std::vector<Vec3>(mesh.surface.positions.size(), {1, 1, 1}) : mesh.colors;
-}
-
 // Places one instance in the frame of `lit`, lights it, and appends it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
   const BakedMesh& mesh = *instance.mesh;
@@ -212,6 +207,10 @@ LightSettings lightForSun(float azimuth_degrees, float elevation_degrees) {
   light.sky.to_sun = directionFromAngles(azimuth_degrees, elevation_degrees);
   light.sky.colors = skyColorsForSun(light.sky.to_sun.y);
   return light;
+}
+
+std::vector<Vec3> ownColors(const BakedMesh& mesh) {
+  return mesh.colors.empty() ? std::vector<Vec3>(mesh.surface.positions.size(), {1, 1, 1}) : mesh.colors;
 }
 
 bool haveOwnColors(std::span<const Instance> instances, const LightSettings& light) {
@@ -363,7 +362,7 @@ const Keys<LightSettings>& lightKeys() {
        "the same for the sky's term, with the direction up; 0.5 in maajor/Mesh-Cloud-Rendering"},
       {"volume_gain", &S::volume_gain, 0, 10, "factor of the sun's term of clouds that were fitted to a volume, up to all of the light"},
       {"own_colors", &S::own_colors, 0, 1, "clouds have the base colours of their sculpts: materials, textures and vertex colours",
-       KeyUse::kScript, "the page shows clouds without them"},
+       KeyUse::kScript},
       {"lobes_only", &S::lobes_only, 0, 1, "clouds are lit by their lobes even where an asset has harmonics", KeyUse::kScript,
        "'Light by' chooses it"},
       {"extinction", &S::extinction, 1e-9, 1e9, "σ of all mesh clouds per world unit, in place of their own", KeyUse::kScript,

@@ -61,6 +61,9 @@ struct Instance {
   bool is_seen = true;                                ///< else nothing of it is in the picture, and it is not drawn
 };
 
+/// The own colour of each vertex, linear; white where a mesh has none.
+std::vector<Vec3> ownColors(const BakedMesh& mesh);
+
 /// Whether something is drawn in a colour of its own.
 bool haveOwnColors(std::span<const Instance> instances, const LightSettings& light);
 

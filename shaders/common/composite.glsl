@@ -39,15 +39,16 @@ float throughFog(vec4 p, vec3 view, ivec2 at) {
   return exp(-(distance_fog > 0.0 ? distance_fog * distanceOf(p, at) / dot(view, forward) : fog_density * p.w));
 }
 
+// The colour of a cloud behind that fog.
+vec3 inFog(vec3 color, vec4 p, vec3 view, ivec2 at) {
+  return mix(color, fogColor(view), 1.0 - throughFog(p, view, at));
+}
+
 // A colour behind the clouds of a pixel, whose channels are p.
 vec3 behindClouds(vec3 color, vec4 p, ivec2 at) {
   if (!(p.z > 0.0)) {
     return color;
   }
   vec3 view = viewDirection(vec2(at) + 0.5);
-  return mix(color, mix(litCloud(p, view), fogColor(view), 1.0 - throughFog(p, view, at)), p.z);
-}
-
-vec3 withClouds(vec3 color, ivec2 at) {
-  return behindClouds(color, channelsAt(channels, at), at);
+  return mix(color, inFog(litCloud(p, view), p, view, at), p.z);
 }

@@ -3,6 +3,7 @@
 // makes the thickness larger and σ smaller.
 in vec3 mesh_position, mesh_normal;
 in vec4 mesh_lobe;  // direction and thickness
+in vec3 own;        // colour, linear
 in vec4 harmonics_0, harmonics_1, harmonics_2, harmonics_3;
 in vec4 cloud_place;  // and the factor of the size
 in vec4 cloud_light;  // cosine and sine of the turn, what comes of the sun's light past other things, factor of the thickness times σ
@@ -16,7 +17,7 @@ uniform vec2 shape;  // k and b
 uniform float extinction, half_lambert, half_lambert_sky;
 uniform mat3 to_own;           // from the mesh's place before it is scattered to the axes of the harmonics
 uniform float own_extinction;  // for which they were made, per unit of their mesh
-uniform int shown;             // the light of sun and sky, or of lamps: red and green, or blue
+uniform int shown;             // SHOWN of chains.js
 uniform bool of_error;         // no error is known
 uniform vec2 gains;            // of the sun's term, left and right of the divider
 uniform ivec2 lights;          // what the light left and right of the divider follows: lobe, or harmonics (2)
@@ -46,6 +47,10 @@ void main() {
 
   vec3 towards = vec3(c * l.x - s * l.z, l.y, c * l.z + s * l.x);
   float sigma = extinction * cloud_light.w;
+  if (shown > 2) {
+    shade = ownChannels(own, shown);
+    return;
+  }
   if (shown > 0) {
     vec3 o = mesh_lobe.xyz, n = mesh_normal;
     vec4 lobe = vec4(c * o.x + s * o.z, o.y, c * o.z - s * o.x, mesh_lobe.w * cloud_place.w);

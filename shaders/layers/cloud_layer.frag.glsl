@@ -9,7 +9,7 @@ void main() {
   place = vec4(1e30);
   if (p.z > 0.0) {
     vec3 view = viewDirection(gl_FragCoord.xy);
-    color = vec4(mix(litCloud(p, view) + lampsAt(at), fogColor(view), 1.0 - exp(-fog_density * p.w)), p.z);
+    color = vec4(mix((litCloud(p, view) + lampsAt(at)) * ownColor(at), fogColor(view), 1.0 - exp(-fog_density * p.w)), p.z);
     place = vec4(distanceOf(p, at) / dot(view, forward));
   }
 }

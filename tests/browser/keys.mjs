@@ -3,13 +3,14 @@
 // program writes; keys without a control have the reason there. Nothing is drawn.
 //   node tests/browser/keys.mjs CLOUDBAKE SOURCE_FOLDER
 import { execFileSync } from 'node:child_process';
-import { writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { demand, testFolder, testPage } from './browser.mjs';
+import { changedGlb } from './glb.mjs';
 
 const { binary, folder, run, open } = testFolder();
-const CLOUDS = "[[cloud]]\nfile = 'a.glb'\n[[cloud]]\nfile = 'a.glb'\nposition = [1, 2, -4]\n";
+const CLOUDS = "[[cloud]]\nfile = 'a.glb'\n[[cloud]]\nfile = 'red.glb'\nposition = [1, 2, -4]\n";
 const SCENES = {
   day: `[picture]\ntime = 31.7\n[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\nelevation = 34\n[sky]\nhorizon_color = [1, 0, 0]\n
 [terrain]\n[fog]\nper_unit = 0.001\ncolor = [1, 0, 0]\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n
@@ -129,6 +130,10 @@ async function keysThatCount(controls) {
 
 await testPage(folder, async page => {
   run('grow', 'puffball', '--voxels', '24', '--rays', '32', '--vertices', '300', '--basis', 'sh3', '--lattice', 'a.json', '-o', 'a.glb');
+  writeFileSync(join(folder, 'red.glb'), changedGlb(readFileSync(join(folder, 'a.glb')), json => {
+    json.materials = [{ pbrMetallicRoughness: { baseColorFactor: [1, 0, 0, 1] } }];
+    json.meshes[0].primitives[0].material = 0;
+  }));
   const counted = new Set();
   for (const [name, text] of Object.entries(SCENES)) {
     writeFileSync(join(folder, `${name}.toml`), text);

@@ -437,7 +437,7 @@ class Baker {
   /** Shows an asset in the viewer, which begins with the first one: one after the other. @param {Job} job @returns {Promise<any>} */
   view(job) {
     const showNow = async () => {
-      const scene = sceneOfGlb(job.result.glb.buffer, job.path, this.page.like[0]);
+      const scene = await sceneOfGlb(job.result.glb.buffer, job.path, this.page.like[0]);
       scene.key = job;
       if (!window.viewer?.page) {
         window.viewer = new Viewer();

@@ -237,6 +237,27 @@ TEST(LivePage, HoldsHarmonicsAndComparedLobes) {
   EXPECT_NEAR(scene["parts"][0]["harmonics"]["to_own"][0].get<double>(), -0.5, 1e-12);
 }
 
+// Own colours are three floats per vertex of all clouds, and a key of the scene.
+TEST(LivePage, HoldsOwnColors) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  BakedMesh red = ball;
+  scenery.instances.push_back({&red, placement({9, 0, 0}, {}, {1, 1, 1})});
+  scenery.scene.clouds.resize(2);
+  const LiveScene white = liveScene(scenery, "ball");
+  EXPECT_FALSE(white.scene["mesh"]["is_colored"]);
+  red.colors.assign(red.lobes.size(), {1, 0.25F, 0});
+  const LiveScene live = liveScene(scenery, "ball");
+  EXPECT_TRUE(live.scene["mesh"]["is_colored"]);
+  EXPECT_EQ(meshBytes(live).size() - meshBytes(white).size(), 2 * ball.lobes.size() * 4 * 3) << "also of the white one";
+  const auto hasKey = [](const LiveScene& one) {
+    const Json& keys = one.scene["keys"];
+    return std::any_of(keys.begin(), keys.end(), [](const Json& key) { return key["name"] == "own_colors"; });
+  };
+  EXPECT_TRUE(hasKey(live));
+  EXPECT_FALSE(hasKey(white));
+}
+
 // The parabola of the page through three rows is the colour at any height between.
 TEST(LivePage, ColorsFollowTheSun) {
   for (const bool is_published : {false, true}) {
