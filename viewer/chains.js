@@ -82,10 +82,10 @@ export const STEPS = {
 
 // For own colours: nothing darkens them, and no black of a pixel's rest bleeds into them: stepsOfColors of preview/mesh_clouds/.
 function ofColors(renderer) {
-  const { view, look, look: { chain, chain: { distort, erode } } } = renderer;
+  const { view, look, look: { chain } } = renderer;
   return Object.assign(Object.create(renderer), {
     view: { ...view, mean_all: false },
-    look: { ...look, chain: { ...chain, distort: { ...distort, dark: 1 }, erode: { ...erode, darkening: 0 } } },
+    look: { ...look, chain: { ...chain, distort: { ...chain.distort, dark: 1 }, erode: { ...chain.erode, darkening: 0 } } },
   });
 }
 

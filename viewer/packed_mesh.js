@@ -112,7 +112,8 @@ function takeLayers(reader, { moon_picture, lattices }) {
 }
 
 /** @param {Scene | ScatteredClouds} scene @returns {Promise<Arrays>} */
-export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, layers, data }, parts }) {
+export async function unpackMesh({ mesh, parts }) {
+  const { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, layers, data } = mesh;
   const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {
     positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),

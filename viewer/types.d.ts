@@ -97,7 +97,8 @@ interface Scene {
 
 interface Look {
   kind: 'painted' | 'published' | 'plain';
-  half_lambert: number; half_lambert_sky: number; volume_gain: number; own_colors: boolean; view_extinction?: number; first_surface?: boolean;
+  half_lambert: number; half_lambert_sky: number; volume_gain: number; own_colors: boolean;
+  view_extinction?: number; first_surface?: boolean;
   colors: { heights: number[]; colors: Record<string, Row[]> };
   sky_places: [number, number][]; samples: [number, number][];
   chain?: any;

@@ -227,7 +227,8 @@ export class Vertices {
   // The clouds as triangles; `place`: of the sample in the pixel; `shown`: SHOWN of chains.js.
   draw(fragment, view, size, place, values = {}, shown = 0) {
     const { gl } = this.gpu, { arrays, arrays: { triangles } } = this.scene, type = indexType(gl, arrays);
-    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert', ['own_channels']), { ...view, ...values, ...sampleOf(view, size, place, shown) });
+    const program = this.gpu.program(fragment, ['channels'], 'cloud.vert', ['own_channels']);
+    this.gpu.use(program, { ...view, ...values, ...sampleOf(view, size, place, shown) });
     gl.bindVertexArray(this.drawn);
     const of_lamps = shown === 1 || shown === 2;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[of_lamps ? 'lamps' : 'light']);

@@ -33,7 +33,8 @@ function ballText(material) {
   const add = (x, y, z) => {
     const r = 1 + 0.12 * Math.sin(7 * x) * Math.sin(6 * y + 1) * Math.sin(5 * z + 2), place = [x, y, z].map(c => (c * r).toFixed(6));
     const own = [0.5 - 0.45 * x, 0.5 + 0.45 * x, y * 8 % 1 > 0 ? 0.8 : 0.1];
-    lines.push(`v ${[...place, ...material ? [] : own.map(c => c.toFixed(4))].join(' ')}`, `vt ${(1.7 * x).toFixed(6)} ${(0.9 * y).toFixed(6)}`);
+    lines.push(`v ${[...place, ...material ? [] : own.map(c => c.toFixed(4))].join(' ')}`);
+    lines.push(`vt ${(1.7 * x).toFixed(6)} ${(0.9 * y).toFixed(6)}`);
   };
   add(0, 1, 0);
   for (let row = 1; row < rows; ++row)
