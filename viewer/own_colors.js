@@ -59,8 +59,8 @@ async function readTexture(reader, { index, texCoord = 0, extensions }) {
 }
 
 // A grey without a texture, or with a white one, is that of a modelling program: nobody has set it.
-/** @param {{ pbrMetallicRoughness?: { baseColorFactor?: number[], baseColorTexture?: any } }} material */
-async function readMaterial(reader, { pbrMetallicRoughness: { baseColorFactor = WHITE, baseColorTexture } = {} }, note) {
+async function readMaterial(reader, { pbrMetallicRoughness: pbr }, note) {
+  const { baseColorFactor = WHITE, baseColorTexture } = pbr ?? {};
   const factor = baseColorFactor.slice(0, 3).map(limited), is_grey = factor[0] === factor[1] && factor[1] === factor[2];
   if (!baseColorTexture) return { factor: is_grey ? WHITE : factor };
   try {
