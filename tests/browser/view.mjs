@@ -137,9 +137,9 @@ async function isCompared(page) {
 }
 
 // In the page: how far what it unpacked is from the GLB at most. Lengths are shares of the longest, angles are in degrees.
-function farthest(glb) {
+async function farthest(glb) {
   const { viewer: { scene }, modules: { cross, dot, sceneOfGlb } } = window;
-  const exact = sceneOfGlb(Uint8Array.from(atob(glb), c => c.charCodeAt(0)).buffer, 'exact', scene).arrays;
+  const { arrays: exact } = await sceneOfGlb(Uint8Array.from(atob(glb), c => c.charCodeAt(0)).buffer, 'exact', scene);
   const { arrays } = scene, vertices = exact.positions.length / 3;
   const largest = values => values.reduce((most, x) => Math.max(most, x), 0);
   const differences = (a, b) => Array.from(a, (x, i) => Math.abs(x - b[i]));
