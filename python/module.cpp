@@ -108,8 +108,20 @@ void translate(std::exception_ptr thrown) {
 // --- Work ---
 
 // The work of all calls. A call that ends by Ctrl-C leaves work behind that comes to its end by itself; the process must not end under it.
+// Nor must Python end under a call on another thread, for it would end that thread where it waits for Python's lock, in the middle of C++.
 class Works {
  public:
+  // Returns whether there may be new calls.
+  bool enter() {
+    const std::lock_guard lock(mutex_);
+    if (!has_ended_) ++calls_;
+    return !has_ended_;
+  }
+  void leave() {
+    const std::lock_guard lock(mutex_);
+    --calls_;
+    changed_.notify_all();
+  }
   void add(LoopStop* stop) {
     const std::lock_guard lock(mutex_);
     stops_.insert(stop);
@@ -125,14 +137,17 @@ class Works {
   }
   void stopAll() {
     std::unique_lock lock(mutex_);
+    has_ended_ = true;
     for (LoopStop* stop : stops_) stop->request();
-    changed_.wait(lock, [this] { return stops_.empty(); });
+    changed_.wait(lock, [this] { return stops_.empty() && calls_ <= 0; });
   }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
   std::set<LoopStop*> stops_;
+  int calls_ = 0;  // of threads of Python that wait; under 0 after a fork in a call
+  bool has_ended_ = false;
 };
 
 // It outlives all threads, so it is never destroyed. A child of fork has none of the threads.
@@ -146,11 +161,27 @@ Works*& works() {
 
 // At the end of the process. A second Ctrl-C ends it at once.
 void stopAllWork() {
-  if (works()->count() == 0) return;
-  std::signal(SIGINT, SIG_DFL);
+  if (works()->count() > 0) std::signal(SIGINT, SIG_DFL);
   const py::gil_scoped_release released;
   works()->stopAll();
 }
+
+// The process ends while a thread of Python still calls.
+[[noreturn]] void endThread() {
+  PyErr_SetNone(PyExc_SystemExit);
+  throw py::error_already_set();
+}
+
+// While a thread of Python is in a call.
+class Call {
+ public:
+  Call() {
+    if (!works()->enter()) endThread();
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+  ~Call() { works()->leave(); }
+};
 
 // What Python is told of the progress of one call.
 class ProgressTeller {
@@ -185,6 +216,7 @@ auto apart(Work work, py::object progress) {
     LoopStop stop;
     LoopProgress progress;
   };
+  const Call call;
   auto job = std::make_shared<Job>(std::move(work));
   ProgressTeller teller(std::move(progress));
   teller.tell(0, "begin");
@@ -217,9 +249,8 @@ auto apart(Work work, py::object progress) {
     auto result = done.get();
     teller.tellEnd();
     return result;
-  } catch (const LoopStopped&) {  // the process ends while this thread of Python still works
-    PyErr_SetNone(PyExc_SystemExit);
-    throw py::error_already_set();
+  } catch (const LoopStopped&) {
+    endThread();
   }
 }
 
