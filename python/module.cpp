@@ -125,27 +125,34 @@ class Works {
   void add(LoopStop* stop) {
     const std::lock_guard lock(mutex_);
     stops_.insert(stop);
+    ++threads_;
   }
   void remove(LoopStop* stop) {
     const std::lock_guard lock(mutex_);
     stops_.erase(stop);
+  }
+  // A thread has given up all that it had of Python.
+  void end() {
+    const std::lock_guard lock(mutex_);
+    --threads_;
     changed_.notify_all();
   }
   size_t count() {
     const std::lock_guard lock(mutex_);
-    return stops_.size();
+    return threads_;
   }
   void stopAll() {
     std::unique_lock lock(mutex_);
     has_ended_ = true;
     for (LoopStop* stop : stops_) stop->request();
-    changed_.wait(lock, [this] { return stops_.empty() && calls_ <= 0; });
+    changed_.wait(lock, [this] { return threads_ == 0 && calls_ <= 0; });
   }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
   std::set<LoopStop*> stops_;
+  size_t threads_ = 0;
   int calls_ = 0;  // of threads of Python that wait; under 0 after a fork in a call
   bool has_ended_ = false;
 };
@@ -231,6 +238,8 @@ auto apart(Work work, py::object progress) {
     task();
     task = {};
     all->remove(&job->stop);
+    job.reset();
+    all->end();
   }).detach();
   for (bool is_ready = false; !is_ready;) {
     {
