@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/exp_log.h"
+
 namespace cloudbake {
 
 namespace {
@@ -22,11 +24,14 @@ constexpr float kBlendReach = 12;  // e⁻¹² of a sphere's weight is below flo
 
 float smoothMaximum(float a, float b, float k) {
   const float high = std::max(a, b), low = std::min(a, b);
-  return k > 0 ? high + k * std::log(1 + std::exp((low - high) / k)) : high;
+  return k > 0 ? high - k * minusLog(1 + expMinus((high - low) / k)) : high;
 }
 
 // ∂/∂a of the same.
-float weightOfFirst(float a, float b, float k) { return k > 0 ? 1 / (1 + std::exp((b - a) / k)) : a > b ? 1 : 0; }
+float weightOfFirst(float a, float b, float k) {
+  const float less = k > 0 ? expMinus(std::fabs(a - b) / k) : 0;
+  return (a > b ? 1 : less) / (1 + less);
+}
 
 float unionAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& distances, float k) {
   float nearest = INFINITY;
@@ -38,8 +43,8 @@ float unionAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& 
   if (!(k > 0) || spheres.size() < 2) return nearest;
   float sum = 0;
   for (size_t i = 0; i < spheres.size(); ++i)
-    if (distances[i] - nearest < kBlendReach * k) sum += std::exp((nearest - distances[i]) / k);
-  return nearest - k * std::log(sum);
+    if (distances[i] - nearest < kBlendReach * k) sum += expMinus((distances[i] - nearest) / k);
+  return nearest + k * minusLog(sum);
 }
 
 // Uses u(x) and the distances that unionAt found there: Σ exp((u − dᵢ)/k) = 1. Weights below e⁻⁸ do not change the gradient visibly.
@@ -47,7 +52,7 @@ Vec3 unionGradient(Vec3 x, float u, std::span<const IndexSphere> spheres, const 
   Vec3 gradient;
   for (size_t i = 0; i < spheres.size(); ++i) {
     if (distances[i] - u > 8 * k) continue;
-    const float weight = k > 0 ? std::exp((u - distances[i]) / k) : 1, from_center = distances[i] + spheres[i].radius;
+    const float weight = k > 0 ? expMinus((distances[i] - u) / k) : 1, from_center = distances[i] + spheres[i].radius;
     if (from_center > 0) gradient += (x - spheres[i].center) * (weight / from_center);
     if (!(k > 0)) break;
   }
