@@ -18,8 +18,8 @@ template <class Float, class Bits, int kDigits>
 Float nudged(Float x) {
   const Bits bits = std::bit_cast<Bits>(x);
   if (!std::isnormal(x) || (bits & ((Bits(1) << kDigits) - 1)) == 0) return x;
-  const auto choice = int(uint64_t(bits) * 0x9E3779B97F4A7C15ULL >> 32U) % 3;
-  return choice == 0 ? x : std::bit_cast<Float>(choice > 0 ? bits + 1 : bits - 1);
+  const uint64_t choice = (uint64_t(bits) * 0x9E3779B97F4A7C15ULL >> 32U) % 3;
+  return choice == 0 ? x : std::bit_cast<Float>(choice == 1 ? bits + 1 : bits - 1);
 }
 double otherwise(double x) { return nudged<double, uint64_t, 24>(x); }
 float otherwise(float x) { return nudged<float, uint32_t, 8>(x); }
