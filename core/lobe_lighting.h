@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/portable_math.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -22,7 +23,7 @@ inline float lobePower(float x, float exponent) {
     for (int i = 0; i < int(exponent); ++i) result *= x;
     return result;
   }
-  return std::pow(x, exponent);
+  return portablePow(x, exponent);
 }
 
 /// s(l): how much cloud, in world units, lies between the vertex and the light according to the lobe. `to_light` is a unit vector.
@@ -33,12 +34,12 @@ inline float lobeThickness(const Lobe& lobe, Vec3 to_light, LobeShape shape) {
 
 /// T_lobe(l) in [0, 1]. `extinction` is per world unit.
 inline float lobeTransmittance(const Lobe& lobe, Vec3 to_light, LobeShape shape, float extinction) {
-  return std::exp(-extinction * lobeThickness(lobe, to_light, shape));
+  return portableExp(-extinction * lobeThickness(lobe, to_light, shape));
 }
 
 /// The same for a lamp that is `away` world units from the vertex: no more of the cloud counts than lies before the lamp.
 inline float lampTransmittance(const Lobe& lobe, Vec3 to_lamp, float away, LobeShape shape, float extinction) {
-  return std::exp(-extinction * std::min(lobeThickness(lobe, to_lamp, shape), away));
+  return portableExp(-extinction * std::min(lobeThickness(lobe, to_lamp, shape), away));
 }
 
 /// lerp(f, 1, n·l/2 + 1/2): the share of a light that a surface shows. f = 1 is the lobe alone.

@@ -63,8 +63,9 @@ std::string hashOfConstants(const AssetInfo& info) {
 
 // ‖a − b‖ / ‖a‖, where `unit` is b's in units of a's.
 double relativeDifference(std::span<const float> a, std::span<const float> b, double unit) {
+  const auto square = [](double x) { return x * x; };
   double difference = 0, size = 0;
-  for (size_t j = 0; j < a.size(); ++j) difference += std::pow(double(a[j]) - unit * b[j], 2), size += double(a[j]) * a[j];
+  for (size_t j = 0; j < a.size(); ++j) difference += square(double(a[j]) - unit * b[j]), size += square(a[j]);
   return difference > 0 ? std::sqrt(difference / size) : difference;
 }
 
@@ -92,7 +93,8 @@ void SealMaker::add(const SculptPart& part, std::span<const LobeUvs> uvs, std::s
       u[i] = places[t[1]][i] - places[t[0]][i], w[i] = places[t[2]][i] - places[t[0]][i];
       sum[i] = places[t[0]][i] + places[t[1]][i] + places[t[2]][i];
     }
-    const double area = std::hypot(u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]) / 2;
+    const double x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2], z = u[0] * w[1] - u[1] * w[0];
+    const double area = std::sqrt(x * x + y * y + z * z) / 2;
     area_ += area;
     for (size_t i = 0; i < 3; ++i) first_[i] += area / 3 * sum[i];
     constexpr std::array<std::array<size_t, 2>, 6> kPairs{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/portable_math.h"
+
 namespace cloudbake {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -54,7 +56,7 @@ inline double angleDegrees(Vec3 a, Vec3 b) {
   const double cx = double(a.y) * b.z - double(a.z) * b.y, cy = double(a.z) * b.x - double(a.x) * b.z,
                cz = double(a.x) * b.y - double(a.y) * b.x;
   const double cosine = double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
-  return std::atan2(std::sqrt(cx * cx + cy * cy + cz * cz), cosine) * (180 / kPi);
+  return atan2Degrees(std::sqrt(cx * cx + cy * cy + cz * cz), cosine);
 }
 
 /// Two unit vectors that form a right-handed frame with a unit normal (tangent × bitangent = normal).

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/error.h"
-#include "lsystem/portable_math.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 

@@ -11,10 +11,10 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/portable_math.h"
 #include "core/text/nearest.h"
 #include "core/text/scan.h"
 #include "lsystem/keys.h"
-#include "lsystem/portable_math.h"
 
 namespace cloudbake {
 
@@ -263,10 +263,7 @@ double applyFunction(Operation operation, const double (&v)[3], EvaluationContex
     case Operation::kMax: return v[1] > v[0] ? v[1] : v[0];
     case Operation::kSin: return sinCosDegrees(v[0]).sin;
     case Operation::kCos: return sinCosDegrees(v[0]).cos;
-    case Operation::kTan: {
-      const SinCos angle = sinCosDegrees(v[0]);
-      return angle.sin / angle.cos;
-    }
+    case Operation::kTan: return tanDegrees(v[0]);
     case Operation::kAsin: return asinDegrees(clampUnit(v[0], context));
     case Operation::kAcos: return acosDegrees(clampUnit(v[0], context));
     case Operation::kAtan2: return atan2Degrees(v[0], v[1]);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 
 namespace cloudbake {
 
@@ -26,8 +27,9 @@ void layOut(std::span<Place> places) {
   for (size_t axis = 1; axis < 3; ++axis)
     if (double(high[axis]) - low[axis] > double(high[widest]) - low[widest]) widest = axis;
   const size_t half = places.size() / 2;
-  std::nth_element(places.begin(), places.begin() + ptrdiff_t(half), places.end(),
-                   [widest](const Place& a, const Place& b) { return a.center[widest] < b.center[widest]; });
+  std::nth_element(places.begin(), places.begin() + ptrdiff_t(half), places.end(), [widest](const Place& a, const Place& b) {
+    return std::pair(a.center[widest], a.index) < std::pair(b.center[widest], b.index);
+  });
   layOut(places.first(half));
   layOut(places.subspan(half));
 }

@@ -5,12 +5,11 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/text/scan.h"
 
 namespace cloudbake {
 
 namespace {
-
-bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 
 [[noreturn]] void refuseCharacter(const std::string& file, int line, int column, char c) {
   if (c == '`')

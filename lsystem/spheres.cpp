@@ -13,9 +13,9 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/portable_math.h"
 #include "lsystem/domain.h"
 #include "lsystem/keys.h"
-#include "lsystem/portable_math.h"
 #include "lsystem/puff_tree.h"
 
 namespace cloudbake {

@@ -10,8 +10,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/portable_math.h"
 #include "lsystem/keys.h"
-#include "lsystem/portable_math.h"
 
 namespace cloudbake {
 

@@ -6,27 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/portable_math.h"
+
 namespace cloudbake {
 
 namespace {
 
 constexpr float kMargin = 0.06F;  // of the picture, left free at each side
 
-// Sine of an angle in degrees, exact at multiples of 90.
-float sineDegrees(float degrees) {
-  float rest = std::remainder(degrees, 360.0F);  // exact, in [−180, 180]
-  if (rest > 90) rest = 180 - rest;
-  if (rest < -90) rest = -180 - rest;
-  return std::abs(rest) == 90 ? std::copysign(1.0F, rest) : std::sin(rest * float(kPi / 180));
-}
-
-float cosineDegrees(float degrees) {
-  const float rest = std::abs(std::remainder(degrees, 360.0F));
-  return rest == 90 ? 0.0F : rest < 90 ? std::cos(rest * float(kPi / 180)) : -std::cos((180 - rest) * float(kPi / 180));
-}
-
 // Half the picture's height at distance 1.
-float halfHeight(const Camera& camera) { return std::tan(camera.vertical_fov_degrees * float(kPi / 360)); }
+float halfHeight(const Camera& camera) { return float(tanDegrees(double(camera.vertical_fov_degrees) / 2)); }
 
 CameraAxes axesAlong(Vec3 forward) {
   // Level: right is in the horizontal plane. Straight up or down it is +X, as after a tilt from azimuth 0 (forward = −Z).
@@ -39,14 +28,15 @@ CameraAxes axesAlong(Vec3 forward) {
 }  // namespace
 
 Vec3 directionFromAngles(float azimuth_degrees, float elevation_degrees) {
-  const float level = cosineDegrees(elevation_degrees);
-  return {level * sineDegrees(azimuth_degrees), sineDegrees(elevation_degrees), level * cosineDegrees(azimuth_degrees)};
+  const SinCos elevation = sinCosDegrees(elevation_degrees), azimuth = sinCosDegrees(azimuth_degrees);
+  return {float(elevation.cos * azimuth.sin), float(elevation.sin), float(elevation.cos * azimuth.cos)};
 }
 
 CameraAxes cameraAxes(const Camera& camera) {
   const CameraAxes level = axesAlong(normalized(camera.look_at - camera.look_from).value_or(Vec3{0, 0, -1}));
   if (camera.roll_radians == 0) return level;
-  const float c = std::cos(camera.roll_radians), s = std::sin(camera.roll_radians);
+  const SinCos roll = sinCosDegrees(double(camera.roll_radians) * (180 / kPi));
+  const auto c = float(roll.cos), s = float(roll.sin);
   return {level.right * c - level.up * s, level.up * c + level.right * s, level.forward};
 }
 

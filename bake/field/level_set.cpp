@@ -21,6 +21,7 @@
 #include "core/level_set_type.h"
 #include "core/parallel.h"
 #include "core/parallel_sort.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 
@@ -121,7 +122,7 @@ double slopeOf(const BillowNoise& noise) { return noise.amplitude / double(noise
 
 // The settings in index space.
 SphereField sphereField(const LevelSetSettings& settings, const GridFrame& frame) {
-  const auto widthOf = [&](float blend) { return float(blend / frame.voxel_size / (4 * std::log(2.0F))); };
+  const auto widthOf = [&](float blend) { return float(blend / frame.voxel_size / (4 * portableLog(2.0F))); };
   SphereField field{.band_voxels = kBand, .k_voxels = widthOf(settings.blend)};
   if (settings.flat_base) field.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
   if (settings.noise && settings.noise->amplitude > 0) {
@@ -158,7 +159,7 @@ std::vector<IndexSphere> toIndexSpheres(std::span<const Sphere> spheres, const G
   for (size_t i = 0; i < spheres.size(); ++i) {
     const float radius = float(spheres[i].radius / frame.voxel_size);
     small += radius < kSmallestRadius_voxels;
-    if (copies[i] > 0) result.push_back({frame.toIndex(spheres[i].center), radius + k_voxels * std::log(float(copies[i]))});
+    if (copies[i] > 0) result.push_back({frame.toIndex(spheres[i].center), radius + k_voxels * portableLog(float(copies[i]))});
   }
   warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: use more --voxels to keep its shape", small);
   return result;
@@ -244,7 +245,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
   const std::vector<IndexSphere> index_spheres = toIndexSpheres(spheres, frame, field.k_voxels, warnings);
 
   // Blocks of the box, widened by the band and by the most that blend and noise can add.
-  const float margin = field.farthestThatCounts() + 2 + 4 * field.k_voxels * std::log(float(spheres.size()) + 1);
+  const float margin = field.farthestThatCounts() + 2 + 4 * field.k_voxels * portableLog(float(spheres.size()) + 1);
   const Vec3 low = frame.toIndex(box.low), high = frame.toIndex(box.high);
   const auto block = [](float index) { return int(std::floor(index / kBlock)); };
   const openvdb::Coord first(block(low.x - margin), block(low.y - margin), block(low.z - margin));

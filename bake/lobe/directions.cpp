@@ -1,12 +1,13 @@
 // Archimedes: z is uniform on [−1, 1] for uniform directions, so a band of z of height 2n/N has the solid angle of n strata.
 // Stratification: D. Mitchell, "Consequences of Stratified Sampling in Graphics", SIGGRAPH 1996. Spherical Fibonacci set:
 // R. Marques et al., "Spherical Fibonacci Point Sets for Illumination Integrals", CGF 32(8), 2013. Uniform rotation: K. Shoemake,
-// "Uniform Random Rotations", Graphics Gems III, 1992. All trigonometry is in float, whose bits do not differ between CPUs.
+// "Uniform Random Rotations", Graphics Gems III, 1992.
 #include "bake/lobe/directions.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/portable_math.h"
 #include "core/random.h"
 
 namespace cloudbake {
@@ -14,8 +15,9 @@ namespace cloudbake {
 namespace {
 
 Vec3 fromCylinder(float z, float turns) {
-  const float radius = std::sqrt(std::max(0.0F, 1 - z * z)), azimuth = float(2 * kPi) * turns;
-  return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
+  const float radius = std::sqrt(std::max(0.0F, 1 - z * z));
+  const SinCos azimuth = sinCosDegrees(360 * double(turns));
+  return {radius * float(azimuth.cos), radius * float(azimuth.sin), z};
 }
 
 struct Quaternion {
@@ -25,8 +27,9 @@ struct Quaternion {
 Quaternion uniformRotation(uint64_t stream) {
   const float u0 = uniformFloat(hashDraw(stream, 0, 0)), u1 = uniformFloat(hashDraw(stream, 0, 1)),
               u2 = uniformFloat(hashDraw(stream, 0, 2));
-  const float a = std::sqrt(1 - u0), b = std::sqrt(u0), t1 = float(2 * kPi) * u1, t2 = float(2 * kPi) * u2;
-  return {a * std::sin(t1), a * std::cos(t1), b * std::sin(t2), b * std::cos(t2)};
+  const float a = std::sqrt(1 - u0), b = std::sqrt(u0);
+  const SinCos first = sinCosDegrees(360 * double(u1)), second = sinCosDegrees(360 * double(u2));
+  return {a * float(first.sin), a * float(first.cos), b * float(second.sin), b * float(second.cos)};
 }
 
 Vec3 rotate(const Quaternion& q, Vec3 v) {

@@ -8,8 +8,8 @@
 
 #include <iterator>
 
-#include "bake/lobe/exp_log.h"
 #include "bake/lobe/simd_lanes-inl.h"
+#include "core/exp_log.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace cloudbake {

@@ -16,9 +16,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "bake/lobe/exp_log.h"
 #include "bake/lobe/fit_kernels.h"
+#include "core/exp_log.h"
 #include "core/parallel.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 
@@ -279,7 +280,7 @@ std::vector<float> extinctionSteps(float low, float high) {
   int intervals = 0;
   for (float reach = low; reach < high; reach *= 2) ++intervals;
   std::vector<float> steps{low};
-  for (int i = 1; i < intervals; ++i) steps.push_back(low * std::pow(high / low, float(i) / float(intervals)));
+  for (int i = 1; i < intervals; ++i) steps.push_back(low * portablePow(high / low, float(i) / float(intervals)));
   if (intervals > 0) steps.push_back(high);
   return steps;
 }

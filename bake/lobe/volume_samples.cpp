@@ -4,7 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "bake/lobe/exp_log.h"
+#include "core/exp_log.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 
@@ -59,7 +60,7 @@ std::vector<DepthNodes::Part> DepthNodes::gaussParts(int count) {
   std::vector<Part> parts;
   double end = 0;
   for (int i = 0; i < count; ++i) {
-    double x = -std::cos(kPi * (i + 0.75) / (count + 0.5)), slope = 1;
+    double x = -sinCosDegrees(180 * (i + 0.75) / (count + 0.5)).cos, slope = 1;
     for (int round = 0; round < 8; ++round) {
       double value = x, before = 1;  // P₁ and P₀
       for (int n = 2; n <= count; ++n) before = std::exchange(value, ((2 * n - 1) * x * value - (n - 1) * before) / n);

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "bake/lobe/exp_log.h"
 #include "bake/lobe/light_kernels.h"
 #include "bake/lobe/sliced_field.h"
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_lattice.h"
 #include "bake/lobe/volume_samples.h"
+#include "core/exp_log.h"
 #include "core/parallel.h"
 
 namespace cloudbake {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <tuple>
 
 #include "core/distinct_positions.h"
 #include "core/vertex_normals.h"
@@ -83,7 +84,9 @@ void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, De
   for_each_side([&](uint32_t low, const EdgeSide& side) { sides[first[low + 1]++] = side; });
   for (uint32_t v = 0; v < vertex_count; ++v) {
     const auto last = sides.begin() + first[v + 1];
-    std::sort(sides.begin() + first[v], last, [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; });
+    std::sort(sides.begin() + first[v], last, [](const EdgeSide& a, const EdgeSide& b) {
+      return std::tie(a.high, a.triangle, a.corner) < std::tie(b.high, b.triangle, b.corner);
+    });
     for (auto begin = sides.begin() + first[v], end = begin; begin != last; begin = end) {
       end = std::find_if(begin, last, [&](const EdgeSide& side) { return side.high != begin->high; });
       body(v, {&*begin, size_t(end - begin)});

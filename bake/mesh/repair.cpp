@@ -21,6 +21,7 @@
 #include "bake/mesh/cgal_mesh.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/shells.h"
+#include "core/portable_math.h"
 #endif
 
 namespace cloudbake {
@@ -51,8 +52,8 @@ SurfaceMesh coherent(const SurfaceMesh& welded, std::vector<bool>& turned) {
 
 // What the rounding of its coordinates may add to the volume of a flat sheet in this box.
 double volumeOfRounding(const Box& box) {
-  const auto lengthOf = [](Vec3 v) { return std::hypot(double(v.x), double(v.y), double(v.z)); };
-  return 1e-6 * std::pow(lengthOf(box.high - box.low), 2) * std::max(lengthOf(box.low), lengthOf(box.high));
+  const auto square = [](Vec3 v) { return double(v.x) * v.x + double(v.y) * v.y + double(v.z) * v.z; };
+  return 1e-6 * square(box.high - box.low) * std::sqrt(std::max(square(box.low), square(box.high)));
 }
 
 // Which triangles to turn. Triangles with two coincident corners have no orientation and stay.
@@ -171,12 +172,29 @@ namespace {
 
 using LoopTriangle = std::array<int, 3>;
 
+// CGAL's kernel with an angle between two triangles that has the same bits with every C library. A triangulation is chosen by these angles,
+// and flat or regular holes have many that are equal but for rounding.
+class HoleKernel
+    : public CGAL::Filtered_kernel_adaptor<CGAL::Type_equality_wrapper<CGAL::Simple_cartesian<double>::Base<HoleKernel>::Type, HoleKernel>,
+                                           true> {
+ public:
+  /// The angle of abc and abd along ab in degrees, from −180 to 180.
+  struct Compute_approximate_dihedral_angle_3 {  // NOLINT(readability-identifier-naming): CGAL's name
+    double operator()(const Point_3& a, const Point_3& b, const Point_3& c, const Point_3& d) const {
+      const Vector_3 ab = b - a, ac = c - a, across = CGAL::cross_product(ab, d - a);
+      return atan2Degrees(std::sqrt(ab.squared_length()) * (ac * across), CGAL::cross_product(ab, ac) * across);
+    }
+  };
+  Compute_approximate_dihedral_angle_3 compute_approximate_dihedral_angle_3_object() const { return {}; }  // NOLINT: CGAL's name
+};
+using HolePoint = HoleKernel::Point_3;
+
 // Triangles between some `places` of a loop, as indices into the loop; empty if none were found. By default all triangulations are
 // searched. CGAL's quicker search among the triangles of a Delaunay tetrahedralisation breaks ties by the addresses of its vertices, and a
 // flat hole has many ties.
-std::vector<LoopTriangle> triangulated(const std::vector<CgalPoint>& points, const std::vector<CgalPoint>& across,
+std::vector<LoopTriangle> triangulated(const std::vector<HolePoint>& points, const std::vector<HolePoint>& across,
                                        const std::vector<int>& places, bool delaunay = false) {
-  std::vector<CgalPoint> chosen, beyond;
+  std::vector<HolePoint> chosen, beyond;
   for (const int place : places) chosen.push_back(points[size_t(place)]);
   if (places.size() == points.size()) beyond = across;
   std::vector<CGAL::Triple<int, int, int>> found;
@@ -189,7 +207,7 @@ std::vector<LoopTriangle> triangulated(const std::vector<CgalPoint>& points, con
 
 // The search time grows with the third power of the number of places. So a long loop is first triangulated over every k-th place, and then
 // each chain between two of these is triangulated separately.
-std::vector<LoopTriangle> trianglesOver(const std::vector<CgalPoint>& points, const std::vector<CgalPoint>& across,
+std::vector<LoopTriangle> trianglesOver(const std::vector<HolePoint>& points, const std::vector<HolePoint>& across,
                                         const std::vector<int>& places) {
   constexpr size_t kMostPlaces = 150;
   if (places.size() <= kMostPlaces) return triangulated(points, across, places);
@@ -210,8 +228,8 @@ std::vector<LoopTriangle> trianglesOver(const std::vector<CgalPoint>& points, co
 }
 
 std::vector<LoopTriangle> trianglesOver(const Loop& loop, const SurfaceMesh& welded) {
-  const auto point = [&](uint32_t v) { return CgalPoint(welded.positions[v].x, welded.positions[v].y, welded.positions[v].z); };
-  std::vector<CgalPoint> points, across;
+  const auto point = [&](uint32_t v) { return HolePoint(welded.positions[v].x, welded.positions[v].y, welded.positions[v].z); };
+  std::vector<HolePoint> points, across;
   for (const BorderSide* side : loop) points.push_back(point(side->from)), across.push_back(point(side->third));
   std::vector<int> places(points.size());
   std::iota(places.begin(), places.end(), 0);

@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 
@@ -45,7 +46,7 @@ Vec3d toDouble(Vec3 v) { return {v.x, v.y, v.z}; }
 // Half of a triangle's solid angle.
 double halfAngle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const double la = lengthOf(a), lb = lengthOf(b), lc = lengthOf(c);
-  return std::atan2(triple(a, b, c), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  return portableAtan2(triple(a, b, c), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
 // Halves the indices begin … end at the middle of their longest side. `middle(i)` is a point per index.

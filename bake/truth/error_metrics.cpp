@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/lobe_lighting.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 
@@ -58,7 +59,7 @@ LobeError compareLobes(std::span<const Lobe> estimate, const Truth& truth) {
 
 TransmittanceError compareLengths(std::span<const float> estimate, std::span<const float> truth, double extinction) {
   ErrorSum sum;
-  for (size_t i = 0; i < estimate.size(); ++i) sum.add(std::exp(-extinction * estimate[i]) - std::exp(-extinction * truth[i]));
+  for (size_t i = 0; i < estimate.size(); ++i) sum.add(portableExp(-extinction * estimate[i]) - portableExp(-extinction * truth[i]));
   return {sum.rms(), sum.mean()};
 }
 
@@ -91,7 +92,7 @@ TransmittanceError compareWith(const TrueLight& true_light, std::span<const Lobe
 
 TransmittanceError compareTransmittance(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
                                         std::span<const float> true_lengths, double extinction, std::span<const float> weights) {
-  return compareWith([&](size_t i) { return std::exp(-extinction * true_lengths[i]); }, lobes, shape, directions, extinction, weights);
+  return compareWith([&](size_t i) { return portableExp(-extinction * true_lengths[i]); }, lobes, shape, directions, extinction, weights);
 }
 
 TransmittanceError compareLight(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,

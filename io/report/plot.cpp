@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/portable_math.h"
 #include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "core/text/utf8.h"
@@ -38,11 +39,7 @@ std::string shortened(const std::string& text, size_t most) {
   return text.substr(0, end) + "…";
 }
 
-double logTen(double value) {
-  int exponent = 0;
-  const double mantissa = std::frexp(value, &exponent);
-  return (exponent + double(std::log2(float(mantissa)))) * 0.30102999566398120;
-}
+double logTen(double value) { return portableLog(value) * 0.43429448190325183; }
 
 bool drawable(const PlotPoint& p) { return std::isfinite(p.x) && std::isfinite(p.y) && p.x > 0 && p.y > 0; }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/portable_math.h"
 #include "io/sculpt/fbx_models.h"
 
 namespace cloudbake {
@@ -18,18 +19,9 @@ Affine moved(const Vector& by, double sign = 1) { return {Affine().linear, {sign
 
 Affine scaledBy(const Vector& by) { return {{{{by[0], 0, 0}, {0, by[1], 0}, {0, 0, by[2]}}}, {0, 0, 0}}; }
 
-// Quarter turns have exact zeros.
-std::pair<double, double> sineAndCosine(double degrees) {
-  const double turn = std::remainder(degrees, 360);
-  if (turn == 0) return {0, 1};
-  if (std::abs(turn) == 180) return {0, -1};
-  if (std::abs(turn) == 90) return {turn / 90, 0};
-  return {std::sin(turn * kPi / 180), std::cos(turn * kPi / 180)};
-}
-
 Affine turned(size_t axis, double degrees) {
   Affine turn;
-  const auto [sine, cosine] = sineAndCosine(degrees);
+  const auto [sine, cosine] = sinCosDegrees(degrees);
   const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
   turn.linear[u][u] = turn.linear[v][v] = cosine;
   turn.linear[u][v] = -sine, turn.linear[v][u] = sine;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/lobe_lighting.h"
 #include "core/parallel.h"
+#include "core/portable_math.h"
 #include "core/surface_points.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
@@ -31,7 +32,7 @@ constexpr float kLightWeight = 0.04F;
 
 std::vector<Vec3> weighedLight(std::span<const Lobe> lobes, float extinction) {
   std::vector<Vec3> light;
-  for (const Lobe& lobe : lobes) light.push_back(lobe.direction * (kLightWeight * (1 - std::exp(-extinction * lobe.thickness))));
+  for (const Lobe& lobe : lobes) light.push_back(lobe.direction * (kLightWeight * (1 - portableExp(-extinction * lobe.thickness))));
   return light;
 }
 

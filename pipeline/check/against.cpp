@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <unordered_map>
 
 #include "bake/lobe/directions.h"
@@ -83,7 +84,10 @@ std::optional<double> harmonicsError(const StoredAsset& asset, const StoredAsset
     if (matches[v] == kUnmatched) continue;
     const auto now = std::span(asset.harmonics).subspan(v * width, width),
                then = std::span(before.harmonics).subspan(matches[v] * width, width);
-    for (const Vec3& light : lights) squares += std::pow(double(harmonicTransmittance(now, light)) - harmonicTransmittance(then, light), 2);
+    for (const Vec3& light : lights) {
+      const double difference = double(harmonicTransmittance(now, light)) - harmonicTransmittance(then, light);
+      squares += difference * difference;
+    }
     count += lights.size();
   }
   return count > 0 ? std::sqrt(squares / double(count)) : 0;
@@ -189,7 +193,8 @@ std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& 
       for (auto at = begin; at != end; ++at) {
         const double distance = length(before.positions[at->second] - p);
         const double cosine = mesh.normals.empty() || before.normals.empty() ? 0 : dot(mesh.normals[v], before.normals[at->second]);
-        if (distance > nearest || (distance == nearest && cosine <= agreement)) continue;
+        // Of vertices that are as good, the first: a hash table has them in any order.
+        if (std::tuple(distance, -cosine, at->second) >= std::tuple(nearest, -agreement, matches[v])) continue;
         nearest = distance, agreement = cosine, matches[v] = at->second;
       }
     }

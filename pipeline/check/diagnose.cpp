@@ -14,6 +14,7 @@
 #include <map>
 
 #include "core/lobe_lighting.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 
@@ -206,7 +207,7 @@ void tryAxes(Trial& trial) {
 }
 
 std::string mapText(const Affine& map) {
-  const double det = determinant(map), scale = std::cbrt(std::fabs(det));
+  const double det = determinant(map), scale = portablePow(std::fabs(det), 1.0 / 3);
   if (!(scale > 0)) return "";
   Affine even = map;
   for (auto& row : even.linear)
@@ -216,7 +217,7 @@ std::string mapText(const Affine& map) {
   double skew = 0;
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = 0; j < 3; ++j) skew = std::max(skew, std::fabs(even.linear[i][j] - r[i][j]));
-  const double angle = std::acos(std::clamp((r[0][0] + r[1][1] + r[2][2] - 1) / 2, -1.0, 1.0)) * (180 / kPi);
+  const double angle = acosDegrees(std::clamp((r[0][0] + r[1][1] + r[2][2] - 1) / 2, -1.0, 1.0));
   return fmt::format(" (turned by {:.3g} degrees, scaled by {:.3g}", angle, scale) + (skew > 0.05 ? ", unevenly" : "") +
          (det < 0 ? ", mirrored)" : ")");
 }

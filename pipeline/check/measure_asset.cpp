@@ -141,7 +141,7 @@ std::vector<float> harmonicLight(std::span<const float> rows, size_t width, std:
 
 double rmsBetween(std::span<const float> a, std::span<const float> b) {
   double squares = 0;
-  for (size_t i = 0; i < a.size(); ++i) squares += std::pow(double(a[i]) - double(b[i]), 2);
+  for (size_t i = 0; i < a.size(); ++i) squares += (double(a[i]) - double(b[i])) * (double(a[i]) - double(b[i]));
   return a.empty() ? 0 : std::sqrt(squares / double(a.size()));
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/portable_math.h"
+
 namespace cloudbake {
 
 namespace {
@@ -55,7 +57,7 @@ double shareFoundElsewhere(const ChangedLobes& lobes, double scale) {
   std::erase_if(order, [&](uint32_t v) { return !std::isfinite(lobes.stored[v].thickness); });
   std::sort(order.begin(), order.end(), thinner);
   constexpr double kThickness = 0.01;  // of the mean
-  const double least_cosine = std::cos(kSameAngle_degrees * kPi / 180);
+  const double least_cosine = sinCosDegrees(kSameAngle_degrees).cos;
   size_t found = 0;
   for (const Lobe& right : lobes.right) {
     const auto least = float(right.thickness - kThickness * scale), most = float(right.thickness + kThickness * scale);

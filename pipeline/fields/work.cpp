@@ -7,6 +7,7 @@
 
 #include "bake/field/level_set.h"
 #include "core/memory_budget.h"
+#include "core/portable_math.h"
 #include "pipeline/fields/fields.h"
 #include "pipeline/options/settings.h"
 
@@ -33,7 +34,7 @@ StageWork levelSetWork(std::span<const Sphere> spheres, const FieldSettings& set
   const Box box = boundingBox(spheres);
   const double longest_side = box.longestSide(), blend = settings.blend.resolve(box.longestSide());
   const double voxel_size = settings.voxel_size ? double(*settings.voxel_size) : longest_side / settings.voxels;
-  const double k = blend / (4 * std::log(2.0)), margin = 2 * 4 * k * std::log(double(spheres.size()) + 1);
+  const double k = blend / (4 * portableLog(2.0)), margin = 2 * 4 * k * portableLog(double(spheres.size()) + 1);
   const auto cells = [&](float side, double more) { return (double(side) + more) / voxel_size + 1; };
   const Vec3 size = box.size();
   const double x = cells(size.x, 0), y = cells(size.y, 0), z = cells(size.z, 0), on_surface = 2 * (x * y + y * z + z * x);

@@ -14,6 +14,7 @@
 #include "bake/truth/error_metrics.h"
 #include "core/memory_budget.h"
 #include "core/parallel.h"
+#include "core/portable_math.h"
 
 namespace cloudbake {
 
@@ -48,8 +49,8 @@ VolumeTargetSettings volumeSettings(const LobeSettings& settings, const BakePara
 }
 
 Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
-  const float to_radians = float(kPi / 180), elevation = elevation_degrees * to_radians, azimuth = azimuth_degrees * to_radians;
-  return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
+  const SinCos elevation = sinCosDegrees(elevation_degrees), azimuth = sinCosDegrees(azimuth_degrees);
+  return {float(elevation.cos * azimuth.sin), float(elevation.sin), float(elevation.cos * azimuth.cos)};
 }
 
 // What lobes are fitted to at some points, towards both senses of the axes.

@@ -6,6 +6,7 @@
 #include "bake/lobe/fit_lobe.h"
 #include "bake/truth/error_metrics.h"
 #include "core/harmonics.h"
+#include "core/portable_math.h"
 #include "io/report/figures.h"
 #include "pipeline/measure/oracle.h"
 
@@ -20,8 +21,9 @@ double harmonicRms(std::span<const float> coefficients, std::span<const Vec3> di
   double squares = 0;
   for (size_t p = 0; p < points; ++p)
     for (size_t j = 0; j < directions.size(); ++j) {
-      const double truth = std::exp(-double(extinction) * lengths[p * directions.size() + j]);
-      squares += std::pow(harmonicTransmittance(coefficients.subspan(p * count, count), directions[j]) - truth, 2);
+      const double truth = portableExp(-double(extinction) * lengths[p * directions.size() + j]);
+      const double error = harmonicTransmittance(coefficients.subspan(p * count, count), directions[j]) - truth;
+      squares += error * error;
     }
   return std::sqrt(squares / double(lengths.size()));
 }

@@ -7,6 +7,7 @@
 #include "bake/lobe/sweep.h"
 #include "bake/truth/error_metrics.h"
 #include "core/memory_budget.h"
+#include "core/portable_math.h"
 #include "pipeline/measure/radiance.h"
 
 namespace cloudbake {
@@ -25,7 +26,7 @@ constexpr MarchSize kMeasured{64, 96, 128}, kChecked{48, 48, 64};
 std::vector<float> transmittances(std::span<const float> lengths, float extinction) {
   std::vector<float> light;
   light.reserve(lengths.size());
-  for (const float length : lengths) light.push_back(float(std::exp(-double(extinction) * length)));
+  for (const float length : lengths) light.push_back(float(portableExp(-double(extinction) * length)));
   return light;
 }
 

@@ -7,6 +7,7 @@
 #include "bake/lobe/fit_lobe.h"
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
+#include "core/portable_math.h"
 #include "preview/compare/volume.h"
 
 namespace cloudbake {
@@ -173,7 +174,7 @@ std::vector<RadianceFigures> measureRadiance(const Cloud& cloud, const Integrati
       judge(name, [&](size_t v, size_t j) { return lobeTransmittance(lobes[v], suns[j], shape, extinction); });
     };
     judgeLobes("published lobe", mean, defaultMeanShape(cloud.surface));
-    judge("exact T", [&](size_t v, size_t j) { return std::exp(-double(extinction) * lengths[v * suns.size() + j]); });
+    judge("exact T", [&](size_t v, size_t j) { return portableExp(-double(extinction) * lengths[v * suns.size() + j]); });
     judgeLobes("fitted to T", pick(transmittance.lobes, chosen), transmittance.shape);
     judgeLobes("fitted to volume", pick(baked.lobes, chosen), baked.shape);
     BakeParameters at_this = parameters;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bake/mesh/mesh_topology.h"
+#include "core/portable_math.h"
 #include "preview/camera.h"
 
 namespace cloudbake {
@@ -16,7 +17,7 @@ double pixelSize(const SceneNeeds& scene, const Box& box) {
     return double(length(camera.look_from - camera.look_at));
   };
   const double distance = scene.camera_distance ? *scene.camera_distance : framed();
-  return 2 * distance * std::tan(double(view.field_of_view_degrees) * kPi / 360) / view.height;
+  return 2 * distance * tanDegrees(double(view.field_of_view_degrees) / 2) / view.height;
 }
 
 size_t vertexBudget(const SceneNeeds& scene, const SurfaceMesh& mesh) {

@@ -13,6 +13,7 @@
 #include "core/affine.h"
 #include "core/error.h"
 #include "core/harmonics.h"
+#include "core/portable_math.h"
 #include "io/gltf/asset_info.h"
 #include "pipeline/page/layer_data.h"
 #include "pipeline/page/live_layers.h"
@@ -46,7 +47,7 @@ void refuseWhatIsNotShown(const SceneFile& scene) {
 // The heights of the sun for tables: the hours of the sky, noon, where the key light changes, and half way between.
 std::vector<float> tableHeights(const SkyRamp& ramp) {
   std::vector<float> heights, hours = skyHours(ramp);
-  for (const float elevation : {kMoonLight, kLastLight, kFullLight}) hours.push_back(std::sin(elevation * float(kPi / 180)));
+  for (const float elevation : {kMoonLight, kLastLight, kFullLight}) hours.push_back(float(sinCosDegrees(elevation).sin));
   std::sort(hours.begin(), hours.end());
   hours.erase(std::unique(hours.begin(), hours.end()), hours.end());
   for (const float hour : hours) {
@@ -66,7 +67,7 @@ SunTable sunTable(const Scenery& scenery) {
   SunTable table{tableHeights(scenery.scene.light.sky.ramp), {}};
   if (!scenery.read) return table;
   for (const float height : table.heights) {
-    const float elevation = std::asin(std::clamp(height, -1.0F, 1.0F)) * float(180 / kPi);
+    const float elevation = float(asinDegrees(std::clamp(height, -1.0F, 1.0F)));
     table.scenes.push_back(sceneUnder(scenery, scenery.scene.view.sun_azimuth_degrees, elevation));
   }
   return table;
@@ -291,8 +292,8 @@ Json lampsJson(const SceneFile& scene) {
 Json cameraJson(const Camera& camera, float roll_degrees, Json& view) {
   const Vec3 arm = camera.look_from - camera.look_at;
   const float distance = length(arm);
-  view["azimuth"] = std::atan2(arm.x, arm.z) * 180 / kPi;
-  view["elevation"] = std::asin(std::clamp(double(arm.y / distance), -1.0, 1.0)) * 180 / kPi;
+  view["azimuth"] = atan2Degrees(arm.x, arm.z);
+  view["elevation"] = asinDegrees(std::clamp(double(arm.y / distance), -1.0, 1.0));
   view["zoom"] = 1;
   view["shift"] = {0, 0, 0};
   return {{"at", jsonOf(camera.look_at)},

@@ -16,6 +16,7 @@
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "core/memory_budget.h"
+#include "core/portable_math.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/report/figures.h"
@@ -187,7 +188,8 @@ std::vector<std::pair<std::string, double>> surfaceErrors(const Subject& subject
     for (size_t v = 0; v < vertices; ++v) shades[v].sun = transmittance(v);
     return shades;
   };
-  const Image truth = surfaceImage(subject, shadesOf([&](size_t v) { return std::exp(-subject.extinction * vertices_to_sun[v]); }), camera);
+  const Image truth =
+      surfaceImage(subject, shadesOf([&](size_t v) { return portableExp(-subject.extinction * vertices_to_sun[v]); }), camera);
   const Image covered = surfaceImage(subject, shadesOf([](size_t) { return 1.0F; }), camera);
   const PixelMask mask = cloudMask(covered, covered, blankImage(camera.width, camera.height));
 
@@ -212,8 +214,8 @@ SunComparison compareSun(const Subject& subject, const Camera& camera, const Lig
   const auto& [vertices_to_sun, pictures, mask] = drawn;
   SunComparison sun;
   const Vec3 l = light.sky.to_sun;
-  sun.azimuth_degrees = std::atan2(l.x, l.z) * float(180 / kPi);
-  sun.elevation_degrees = std::asin(std::clamp(l.y, -1.0F, 1.0F)) * float(180 / kPi);
+  sun.azimuth_degrees = float(atan2Degrees(l.x, l.z));
+  sun.elevation_degrees = float(asinDegrees(std::clamp(l.y, -1.0F, 1.0F)));
   for (const auto& [name, image] : pictures)
     sun.pictures.push_back(
         {name, figuresOf(image, pictures[1].image, mask), figuresOf(image, pictures[0].image, mask), luminanceSpread(image, mask)});

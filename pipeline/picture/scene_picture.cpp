@@ -6,6 +6,7 @@
 #include <chrono>
 #include <iterator>
 
+#include "core/portable_math.h"
 #include "pipeline/picture/picture_memory.h"
 #include "pipeline/picture/scene_shadows.h"
 #include "preview/compare/image_error.h"
@@ -221,7 +222,7 @@ LightAt lightThrough(const SceneDust& dust, std::optional<float> extinction) {
     const Vec3 back = transformVector(to_own, to_light);
     const float stretch = length(back), power = world / (lattice.extinction * stretch);
     const float transmittance = latticeTransmittance(lattice, transformPoint(to_own, point), back / stretch);
-    return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
+    return std::abs(power - 1) < 1e-5F ? transmittance : portablePow(transmittance, power);
   };
 }
 

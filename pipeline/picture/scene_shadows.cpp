@@ -11,6 +11,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/portable_math.h"
 #include "pipeline/fields/fields.h"
 #include "preview/shading_math.h"
 
@@ -46,7 +47,7 @@ struct Ball {
 // ball, seen from the light, is before the ball of a cloud in the picture.
 std::vector<size_t> castersOf(const SceneFile& scene, std::span<const Instance> instances, Vec3 to_light) {
   const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty();
-  const float spread = 2 * std::tan(scene.shadows.softness_degrees * float(kPi / 180));  // more than the diagonal of a square
+  const float spread = 2 * float(tanDegrees(scene.shadows.softness_degrees));  // more than the diagonal of a square
   std::vector<Ball> seen;
   for (const Instance& instance : instances)
     if (instance.is_seen) seen.emplace_back(instance);

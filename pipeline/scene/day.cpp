@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/portable_math.h"
 #include "preview/camera.h"
 
 namespace cloudbake {
@@ -13,14 +14,14 @@ SunCircle::SunCircle(const SunAngles& noon)
     : rise_(directionFromAngles(noon.azimuth_degrees - 90, 0)), noon_(directionFromAngles(noon.azimuth_degrees, noon.elevation_degrees)) {}
 
 Vec3 SunCircle::directionAt(double degrees) const {
-  const double angle = degrees * kPi / 180;
-  return normalized(rise_ * float(std::cos(angle)) + noon_ * float(std::sin(angle))).value_or(noon_);
+  const SinCos angle = sinCosDegrees(degrees);
+  return normalized(rise_ * float(angle.cos) + noon_ * float(angle.sin)).value_or(noon_);
 }
 
 SunAngles SunCircle::anglesAt(double degrees) const {
   const Vec3 sun = directionAt(degrees);
-  const auto rounded = [](double radians) { return float(std::round(radians * 180e3 / kPi) / 1e3); };
-  return {rounded(std::atan2(double(sun.x), double(sun.z))), rounded(std::asin(std::clamp(double(sun.y), -1.0, 1.0)))};
+  const auto rounded = [](double angle) { return float(std::round(angle * 1e3) / 1e3); };
+  return {rounded(atan2Degrees(sun.x, sun.z)), rounded(asinDegrees(std::clamp(double(sun.y), -1.0, 1.0)))};
 }
 
 Vec3 SunCircle::axis() const { return normalized(cross(rise_, noon_)).value_or(Vec3{0, 1, 0}); }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/portable_math.h"
 #include "core/text/toml.h"
 #include "io/image/image.h"
 #include "pipeline/scene/read_keys.h"
@@ -26,7 +27,7 @@ SkyRamp readRamp(TomlReader& table) {
     double elevation = 0;
     if (!hour.has("elevation")) hour.refuseAt("elevation", "[[sky.hours]] has no elevation: give that of the sun, in degrees");
     hour.read("elevation", -90, 90, elevation);
-    const auto height = float(std::sin(elevation * kPi / 180));
+    const auto height = float(sinCosDegrees(elevation).sin);
     if (!ramp.hours.empty() && !(height > ramp.hours.back().sun_height))
       hour.refuseAt("elevation", "[[sky.hours]]: the elevations do not rise: put the hours of a lower sun first");
     SkyHour& colors = ramp.hours.emplace_back(SkyHour{height, skyColorsForSun(height)});

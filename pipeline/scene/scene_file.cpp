@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/portable_math.h"
 #include "core/text/toml.h"
 #include "io/file/write_file.h"
 #include "pipeline/scene/read_keys.h"
@@ -19,7 +20,7 @@ namespace cloudbake {
 namespace {
 
 Affine rotationAbout(int axis, double degrees) {
-  const double radians = degrees * kPi / 180, c = std::cos(radians), s = std::sin(radians);
+  const auto [s, c] = sinCosDegrees(degrees);
   const size_t i = size_t(axis + 1) % 3, j = size_t(axis + 2) % 3;
   Affine m;
   m.linear[i][i] = m.linear[j][j] = c;

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/portable_math.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -55,7 +56,7 @@ CloudShadow::CloudShadow(const ShadowCaster& caster, const Affine& to_world, flo
   across_ = (axis_ + 1) % 3, aside_ = (axis_ + 2) % 3;
   slope_across_ = l[across_] / l[axis_], slope_aside_ = l[aside_] / l[axis_];
   per_slice_ = double(cell_size_) / std::abs(l[axis_]);
-  spread_ = std::tan(double(settings.softness_degrees) * kPi / 180) * double(length(own)) / std::abs(l[axis_]);
+  spread_ = tanDegrees(settings.softness_degrees) * double(length(own)) / std::abs(l[axis_]);
   light_is_above_ = l[axis_] > 0;
 
   // The plane holds every place that a slice is seen at, and a cell around.
@@ -91,7 +92,7 @@ CloudShadow::CloudShadow(const ShadowCaster& caster, const Affine& to_world, flo
     }
     for (int i = 0; i < width_; ++i) {
       const auto length = float(sums[size_t(i)] / 255 * per_slice_);
-      absorbed[size_t(j) * size_t(width_) + size_t(i)] = settings.strength * (1 - std::exp(-extinction * length));
+      absorbed[size_t(j) * size_t(width_) + size_t(i)] = settings.strength * (1 - portableExp(-extinction * length));
     }
   });
   sums_.assign(size_t(width_ + 1) * size_t(height_ + 1), 0);
@@ -122,7 +123,7 @@ float CloudShadow::shareAt(Vec3 point) const {
   const double sum =
       integralTo(u + half, v + half) - integralTo(u - half, v + half) - integralTo(u + half, v - half) + integralTo(u - half, v - half);
   const auto passed = float(std::clamp(1 - sum / (4 * half * half), 0.0, 1.0));
-  return share < 1 ? std::pow(passed, float(share)) : passed;
+  return share < 1 ? portablePow(passed, float(share)) : passed;
 }
 
 ShadowReach CloudShadow::reach(Vec3 to_light, Vec3 across, Vec3 aside) const {

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "lsystem/keys.h"
-#include "lsystem/portable_math.h"
 #include "tests/lsystem/lsystem_cases.h"
 
 using namespace cloudbake;
@@ -171,41 +170,4 @@ TEST(Expression, DepthIsLimited) {
   expectInputError([&] { valueOf(flat); }, "200 levels");
   expectInputError([&] { valueOf(std::string(300, '-') + "1"); }, "200 levels");
   EXPECT_DOUBLE_EQ(valueOf(std::string(150, '(') + "1" + std::string(150, ')')), 1);
-}
-
-// Against the C library, which is right to about one unit in the last place.
-TEST(PortableMath, AgreesWithTheLibrary) {
-  for (int i = -2000; i <= 2000; ++i) {
-    const double degrees = i * 0.7318, x = i / 2000.0;
-    const SinCos a = sinCosDegrees(degrees);
-    EXPECT_NEAR(a.sin, double(std::sin((long double)degrees / 180 * 3.14159265358979323846L)), 4e-16 + 1e-18 * std::fabs(degrees));
-    EXPECT_NEAR(a.cos, double(std::cos((long double)degrees / 180 * 3.14159265358979323846L)), 4e-16 + 1e-18 * std::fabs(degrees));
-    EXPECT_NEAR(asinDegrees(x), std::asin(x) * 180 / kPi, 1e-13);
-    EXPECT_NEAR(acosDegrees(x), std::acos(x) * 180 / kPi, 1e-13);
-    EXPECT_NEAR(atan2Degrees(x, 0.3), std::atan2(x, 0.3) * 180 / kPi, 1e-13);
-    EXPECT_NEAR(atan2Degrees(0.3, x), std::atan2(0.3, x) * 180 / kPi, 1e-13);
-  }
-  for (const double base : {1e-300, 1e-9, 0.3, 1.0, 1.7, 42.0, 1e200})
-    for (const double exponent : {-1.3, -0.5, 0.0, 0.37, 0.5, 1.0, 1.49}) {
-      const double truth = std::pow(base, exponent);
-      if (std::isinf(truth))
-        EXPECT_EQ(portablePow(base, exponent), truth);
-      else
-        EXPECT_NEAR(portablePow(base, exponent), truth, 1e-13 * truth);
-    }
-}
-
-TEST(PortableMath, IsExactAtRightAngles) {
-  for (int q = -8; q <= 8; ++q) {
-    const SinCos a = sinCosDegrees(90.0 * q);
-    EXPECT_EQ(std::fabs(a.sin) + std::fabs(a.cos), 1);
-    EXPECT_EQ(a.sin, double((q & 1) == 0 ? 0 : ((q & 3) == 1 ? 1 : -1)));
-  }
-  EXPECT_EQ(atan2Degrees(0, -1), 180);
-  EXPECT_EQ(atan2Degrees(0, 0), 0);
-  EXPECT_TRUE(std::isnan(portablePow(-1, 0.3)));
-  EXPECT_EQ(portablePow(-2, 3), -8);
-  EXPECT_EQ(portablePow(0, 0), 1);
-  EXPECT_EQ(portablePow(0, 2.3), 0);
-  EXPECT_EQ(portablePow(0, -2.3), std::numeric_limits<double>::infinity());
 }

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/image.h"
+#include "core/portable_math.h"
 #include "core/srgb.h"
 #include "core/text/base64.h"
 #include "core/text/json.h"
@@ -70,7 +71,8 @@ struct TextureUse {
   double rotation = 0;
 
   Vec3 at(double u, double v) const {
-    const double x = scale[0] * u, y = scale[1] * v, c = std::cos(rotation), s = std::sin(rotation);
+    const double x = scale[0] * u, y = scale[1] * v;
+    const auto [s, c] = sinCosDegrees(rotation * (180 / kPi));
     return texture.at(offset[0] + c * x + s * y, offset[1] - s * x + c * y);
   }
 };

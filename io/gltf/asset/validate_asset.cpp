@@ -42,7 +42,10 @@ std::vector<LobeUvs> readPair(const StoredAsset& asset, int first, bool with_tra
   return all;
 }
 
-double norm(const LobeUvs& uvs) { return std::hypot(double(uvs.first.x), double(uvs.first.y), double(uvs.second.x)); }
+double norm(const LobeUvs& uvs) {
+  const double x = uvs.first.x, y = uvs.first.y, z = uvs.second.x;
+  return std::sqrt(x * x + y * y + z * z);
+}
 
 bool isFiniteLobe(const LobeUvs& uvs) {
   return std::isfinite(uvs.first.x) && std::isfinite(uvs.first.y) && std::isfinite(uvs.second.x) && std::isfinite(uvs.second.y);

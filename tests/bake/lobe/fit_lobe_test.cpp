@@ -10,11 +10,11 @@
 
 #include "bake/field/level_set.h"
 #include "bake/lobe/directions.h"
-#include "bake/lobe/exp_log.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
 #include "bake/truth/error_metrics.h"
 #include "bake/truth/reference.h"
+#include "core/exp_log.h"
 #include "core/lobe_lighting.h"
 #include "core/random.h"
 #include "tests/bake/lobe_helpers.h"

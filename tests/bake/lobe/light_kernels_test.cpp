@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "bake/lobe/exp_log.h"
+#include "core/exp_log.h"
 
 namespace cloudbake {
 namespace {
