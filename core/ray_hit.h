@@ -19,7 +19,6 @@ struct RayHit {
 inline constexpr size_t kRaysTogether = 8;
 
 using HitVisit = FunctionRef<void(const RayHit& hit)>;
-using HitOfRayVisit = FunctionRef<void(size_t ray, const RayHit& hit)>;
 /// Gets a triangle and the radius of the search so far, and returns the radius from there on, which must not be larger.
 using NearVisit = FunctionRef<float(uint32_t triangle, float radius)>;
 

@@ -18,8 +18,8 @@ RayScene::RayScene(std::span<const Vec3> positions, std::span<const Triangle> tr
 RayScene::~RayScene() = default;
 
 void RayScene::forHits(const Ray& ray, HitVisit visit) const { scene_->tree.forHits(ray, visit); }
-void RayScene::forHits(Vec3 origin, std::span<const Vec3> directions, HitOfRayVisit visit) const {
-  scene_->tree.forHits(origin, directions, visit);
+void RayScene::addHits(Vec3 origin, std::span<const Vec3> directions, std::span<std::vector<RayHit>> hits) const {
+  scene_->tree.addHits(origin, directions, hits);
 }
 void RayScene::forTrianglesNear(Vec3 point, NearVisit visit) const { scene_->tree.forTrianglesNear(point, visit); }
 
@@ -45,29 +45,28 @@ struct Release {
 };
 
 // The context of a query. Embree passes its address to the filter.
+template <typename Receiver>
 struct AllHits {
   RTCIntersectContext embree;  // must be the first member
-  const HitOfRayVisit* visit;
+  Receiver receive;            // (ray, hit)
 };
 
-void visitAndReject(const RTCFilterFunctionNArguments* args) {
-  const auto* context = reinterpret_cast<const AllHits*>(args->context);
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] != -1) continue;
-    const float facing = RTCHitN_Ng_x(args->hit, args->N, i) * RTCRayN_dir_x(args->ray, args->N, i) +
-                         RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
-                         RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
-    (*context->visit)(RTCRayN_id(args->ray, args->N, i),
-                      {RTCRayN_tfar(args->ray, args->N, i), int(facing > 0) - int(facing < 0), RTCHitN_primID(args->hit, args->N, i)});
-    args->valid[i] = 0;
-  }
-}
-
-AllHits allHits(const HitOfRayVisit& visit) {
-  AllHits context{};
+template <typename Receiver>
+AllHits<Receiver> allHits(const Receiver& receive) {
+  AllHits<Receiver> context{{}, receive};
   rtcInitIntersectContext(&context.embree);
-  context.embree.filter = visitAndReject;
-  context.visit = &visit;
+  context.embree.filter = [](const RTCFilterFunctionNArguments* args) {
+    const auto* hits = reinterpret_cast<const AllHits<Receiver>*>(args->context);
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (args->valid[i] != -1) continue;
+      const float facing = RTCHitN_Ng_x(args->hit, args->N, i) * RTCRayN_dir_x(args->ray, args->N, i) +
+                           RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
+                           RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
+      hits->receive(RTCRayN_id(args->ray, args->N, i),
+                    RayHit{RTCRayN_tfar(args->ray, args->N, i), int(facing > 0) - int(facing < 0), RTCHitN_primID(args->hit, args->N, i)});
+      args->valid[i] = 0;
+    }
+  };
   return context;
 }
 
@@ -113,9 +112,7 @@ RayScene::RayScene(std::span<const Vec3> positions, std::span<const Triangle> tr
 RayScene::~RayScene() = default;
 
 void RayScene::forHits(const Ray& ray, HitVisit visit) const {
-  const auto visit_one = [&](size_t /*ray*/, const RayHit& hit) { visit(hit); };
-  const HitOfRayVisit visit_ray = visit_one;
-  AllHits context = allHits(visit_ray);
+  auto context = allHits([&](unsigned /*ray*/, const RayHit& hit) { visit(hit); });
   const auto& [o, d] = ray;
   RTCRayHit query{};
   query.ray = {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, INFINITY, 0xffffffffU, 0, 0};
@@ -123,10 +120,12 @@ void RayScene::forHits(const Ray& ray, HitVisit visit) const {
   rtcIntersect1(scene_->triangles.get(), &context.embree, &query);
 }
 
-void RayScene::forHits(Vec3 origin, std::span<const Vec3> directions, HitOfRayVisit visit) const {
+void RayScene::addHits(Vec3 origin, std::span<const Vec3> directions, std::span<std::vector<RayHit>> hits) const {
   static_assert(kRaysTogether == 8);
-  if (directions.size() > kRaysTogether) throw std::invalid_argument("RayScene::forHits: too many rays");
-  AllHits context = allHits(visit);
+  if (directions.size() > std::min(kRaysTogether, hits.size())) throw std::invalid_argument("RayScene::addHits: too many rays");
+  auto context = allHits([of_ray = hits.data()](unsigned ray, const RayHit& hit) {
+    if (hit.sign != 0) of_ray[ray].push_back(hit);
+  });
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   alignas(32) std::array<int, kRaysTogether> valid{};
   RTCRayHit8 query{};

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/ray_hit.h"
 #include "core/types.h"
@@ -23,8 +24,9 @@ class RayScene {
 
   /// Calls visit for every triangle that the ray meets, in no particular order. A ray through an edge may meet both triangles of the edge.
   void forHits(const Ray& ray, HitVisit visit) const;
-  /// The same for at most kRaysTogether rays from one place. They are cast faster if their directions are near each other.
-  void forHits(Vec3 origin, std::span<const Vec3> directions, HitOfRayVisit visit) const;
+  /// Appends to hits[i] what the i-th of at most kRaysTogether rays from one place meets, without triangles in whose plane it lies. The
+  /// rays are cast faster if their directions are near each other.
+  void addHits(Vec3 origin, std::span<const Vec3> directions, std::span<std::vector<RayHit>> hits) const;
   /// Calls visit for triangles whose boxes touch the ball around a point, whose radius is infinite at first and then what visit returns:
   /// for every triangle that touches the last ball, and for some that do not.
   void forTrianglesNear(Vec3 point, NearVisit visit) const;

@@ -418,9 +418,9 @@ void TriangleTree::forHits(const Ray& ray, HitVisit visit) const {
   castTogether({&cast, 1}, [&](size_t /*ray*/, const RayHit& hit) { visit(hit); });
 }
 
-void TriangleTree::forHits(Vec3 origin, std::span<const Vec3> directions, HitOfRayVisit visit) const {
+void TriangleTree::addHits(Vec3 origin, std::span<const Vec3> directions, std::span<std::vector<RayHit>> hits) const {
   static_assert(kRaysTogether == 8);
-  if (directions.size() > kRaysTogether) throw std::invalid_argument("TriangleTree::forHits: too many rays");
+  if (directions.size() > std::min(kRaysTogether, hits.size())) throw std::invalid_argument("TriangleTree::addHits: too many rays");
   std::array<Cast, kRaysTogether> casts;
   std::array<size_t, kRaysTogether> rays;
   size_t count = 0;
@@ -429,7 +429,7 @@ void TriangleTree::forHits(Vec3 origin, std::span<const Vec3> directions, HitOfR
     casts[count] = Cast({origin, directions[i]}, reach_);
     rays[count++] = i;
   }
-  if (!nodes_.empty()) castTogether(std::span(casts).first(count), [&](size_t ray, const RayHit& hit) { visit(rays[ray], hit); });
+  if (!nodes_.empty()) castTogether(std::span(casts).first(count), [&](size_t ray, const RayHit& hit) { hits[rays[ray]].push_back(hit); });
 }
 
 // --- Nearest triangles ---

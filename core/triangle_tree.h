@@ -22,8 +22,8 @@ class TriangleTree {
 
   /// Calls visit for every triangle that the ray meets, in no particular order. A ray that is not finite or has no direction meets none.
   void forHits(const Ray& ray, HitVisit visit) const;
-  /// The same for at most kRaysTogether rays from one place.
-  void forHits(Vec3 origin, std::span<const Vec3> directions, HitOfRayVisit visit) const;
+  /// Appends to hits[i] what the i-th of at most kRaysTogether rays from one place meets.
+  void addHits(Vec3 origin, std::span<const Vec3> directions, std::span<std::vector<RayHit>> hits) const;
   /// Calls visit for triangles whose boxes touch the ball around a point, whose radius is infinite at first and then what visit returns:
   /// for every triangle that touches the last ball, and for some that do not. The near ones come early.
   void forTrianglesNear(Vec3 point, NearVisit visit) const;

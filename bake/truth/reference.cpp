@@ -67,9 +67,7 @@ class MeshReference : public Reference {
     for (size_t first = 0; first < directions.size(); first += kRaysTogether) {
       const std::span<const Vec3> some = directions.subspan(first, std::min(kRaysTogether, directions.size() - first));
       for (std::vector<RayHit>& of_ray : hits) of_ray.clear();
-      scene_.forHits(inFrame(origin), some, [](size_t ray, const RayHit& hit) {
-        if (hit.sign != 0) hits[ray].push_back(hit);
-      });
+      scene_.addHits(inFrame(origin), some, hits);
       for (size_t i = 0; i < some.size(); ++i) lengths[first + i] = float(lengthInside(hits[i], length));
     }
   }

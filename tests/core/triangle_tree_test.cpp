@@ -99,7 +99,7 @@ TEST(TriangleTree, RaysTogetherMeetWhatEachMeetsAlone) {
     for (size_t i = 0; i < count; ++i) directions.push_back(draws.direction());
     if (count > 3) directions[1] = {NAN, 0, 0}, directions[2] = {};
     std::vector<std::vector<RayHit>> together(count);
-    tree.forHits(origin, directions, [&](size_t ray, const RayHit& hit) { together[ray].push_back(hit); });
+    tree.addHits(origin, directions, together);
     for (size_t i = 0; i < count; ++i) {
       const std::vector<RayHit> alone = hitsOf(tree, {origin, directions[i]});
       std::sort(together[i].begin(), together[i].end(), [](const RayHit& a, const RayHit& b) { return a.triangle < b.triangle; });
@@ -109,7 +109,8 @@ TEST(TriangleTree, RaysTogetherMeetWhatEachMeetsAlone) {
         EXPECT_TRUE(together[i][k].triangle == alone[k].triangle && together[i][k].t == alone[k].t && together[i][k].sign == alone[k].sign);
     }
   }
-  EXPECT_THROW(tree.forHits({}, std::vector<Vec3>(kRaysTogether + 1, {1, 0, 0}), [](size_t, const RayHit&) {}), std::invalid_argument);
+  std::vector<std::vector<RayHit>> hits(kRaysTogether + 1);
+  EXPECT_THROW(tree.addHits({}, std::vector<Vec3>(kRaysTogether + 1, {1, 0, 0}), hits), std::invalid_argument);
 }
 
 // Signs of the crossings of a line, from its beginning on.
@@ -207,7 +208,9 @@ TEST(TriangleTree, NoRaySlipsBetweenBoxes) {
 TEST(TriangleTree, NoneAndOne) {
   const TriangleTree none({}, {});
   EXPECT_TRUE(hitsOf(none, {{}, {1, 0, 0}}).empty());
-  none.forHits({}, std::vector<Vec3>{{1, 0, 0}}, [](size_t, const RayHit&) { FAIL(); });
+  std::vector<std::vector<RayHit>> hits_of_none(1);
+  none.addHits({}, std::vector<Vec3>{{1, 0, 0}}, hits_of_none);
+  EXPECT_TRUE(hits_of_none[0].empty());
   none.forTrianglesNear({}, [](uint32_t, float radius) { return ADD_FAILURE(), radius; });
 
   const std::vector<Vec3> corners{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
