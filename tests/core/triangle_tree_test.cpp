@@ -157,7 +157,8 @@ TEST(TriangleTree, NoRaySlipsThroughACornerOrAnEdge) {
 TEST(TriangleTree, AxialRaysThroughBoxes) {
   SurfaceMesh boxes;
   for (int i = 0; i < 27; ++i) {
-    const Vec3 low{float(i % 3), float(i / 3 % 3), float(i / 9)};
+    const int row = i / 3 % 3, layer = i / 9;
+    const Vec3 low{float(i % 3), float(row), float(layer)};
     boxes = i == 0 ? boxMesh(low, low + Vec3{1, 1, 1}) : merged(boxes, boxMesh(low, low + Vec3{1, 1, 1}));
   }
   const TriangleTree tree(boxes.positions, boxes.triangles);
