@@ -11,6 +11,8 @@
 #include <type_traits>
 #ifndef CLOUDBAKE_SERIAL
 #include <atomic>
+
+#include "core/function_ref.h"
 #endif
 
 namespace cloudbake {
@@ -132,23 +134,6 @@ class LoopProgress {
  private:
   std::atomic<double> share_ = 0;
   std::atomic<const char*> stage_ = "";
-};
-
-/// A callable without its type. It must outlive the reference.
-template <class Signature>
-class FunctionRef;
-template <class Result, class... Arguments>
-class FunctionRef<Result(Arguments...)> {
- public:
-  template <class Callable>
-  FunctionRef(const Callable& callable)  // not explicit: a loop's body is given as it is
-      : callable_(&callable),
-        call_([](const void* one, Arguments... arguments) -> Result { return (*static_cast<const Callable*>(one))(arguments...); }) {}
-  Result operator()(Arguments... arguments) const { return call_(callable_, arguments...); }
-
- private:
-  const void* callable_;
-  Result (*call_)(const void*, Arguments...);
 };
 
 /// parallelBlocks and parallelInOrder without types.

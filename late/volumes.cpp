@@ -27,7 +27,7 @@
   FUNCTION(std::vector<Lobe>, hddaSphereRays,                                                                                             \
            (const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings),                       \
            (points, level_set, settings, warnings))                                                                                       \
-  FUNCTION(std::vector<Lobe>, embreeSphereRays,                                                                                           \
+  FUNCTION(std::vector<Lobe>, referenceSphereRays,                                                                                        \
            (const BakePoints& points, const Reference& reference, const BakeSettings& settings, Warnings& warnings),                      \
            (points, reference, settings, warnings))                                                                                       \
   FUNCTION(std::vector<float>, hddaLengths,                                                                                               \

@@ -144,7 +144,8 @@ std::vector<Lobe> hddaSphereRays(const BakePoints& points, const LevelSet& level
   return bakeBy(make_length, points, level_set.frame, settings, warnings);
 }
 
-std::vector<Lobe> embreeSphereRays(const BakePoints& points, const Reference& reference, const BakeSettings& settings, Warnings& warnings) {
+std::vector<Lobe> referenceSphereRays(const BakePoints& points, const Reference& reference, const BakeSettings& settings,
+                                      Warnings& warnings) {
   const double ray_length = settings.ray_length.value();
   const auto make_length = [&] { return [&](const Ray& ray) { return float(reference.insideLength(ray, ray_length)); }; };
   return bakeBy(make_length, points, GridFrame{}, settings, warnings);

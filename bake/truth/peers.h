@@ -19,7 +19,8 @@ std::vector<Lobe> plainSphereRays(const BakePoints& points, const LevelSet& leve
 std::vector<Lobe> hddaSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings);
 
 /// Uses exact chords. Steps and quadrature do not apply. The random streams depend on world positions, not on the shape's own frame.
-std::vector<Lobe> embreeSphereRays(const BakePoints& points, const Reference& reference, const BakeSettings& settings, Warnings& warnings);
+std::vector<Lobe> referenceSphereRays(const BakePoints& points, const Reference& reference, const BakeSettings& settings,
+                                      Warnings& warnings);
 
 /// ℓ in world units by the hierarchical traversal, from every point along the given directions: #points × #directions, row by row.
 /// `ray_length` is in world units and may be infinite.

@@ -1,12 +1,9 @@
 // Chords of a closed oriented surface: along a ray the winding number falls by one where the ray leaves through a face that
 // points along it (n·ω > 0), and rises by one where it enters. It is 0 beyond the last hit. So, counted from the far end by
 //   w(before hit) = w(after hit) + sign(n·ω)
-// the winding number of each interval is known even if the ray starts on the surface. Intel Embree 3 finds all hits: an intersection
-// filter records each hit and rejects it, so the traversal continues (Embree API reference, "Filter functions"). Rays from one point go
-// side by side in packets.
+// the winding number of each interval is known even if the ray starts on the surface. RayScene finds all hits. Rays from one point go side
+// by side.
 #include "bake/truth/reference.h"
-
-#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <array>
@@ -24,35 +21,8 @@ namespace cloudbake {
 
 namespace {
 
-struct Hit {
-  float t;
-  int32_t sign;  // sign of n·ω; +1 leaves the solid
-  uint32_t triangle;
-};
-
-constexpr int kPacket = 8;  // rays; with 4 or 16 they take longer
-
-struct HitContext {
-  RTCIntersectContext embree;  // must be the first member: Embree passes its address to the filter
-  std::array<std::vector<Hit>, kPacket>* hits;
-};
-
-void recordHits(const RTCFilterFunctionNArguments* args) {
-  auto* context = reinterpret_cast<HitContext*>(args->context);
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] != -1) continue;
-    const float facing = RTCHitN_Ng_x(args->hit, args->N, i) * RTCRayN_dir_x(args->ray, args->N, i) +
-                         RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
-                         RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
-    if (facing != 0)
-      (*context->hits)[RTCRayN_id(args->ray, args->N, i)].push_back(
-          {RTCRayN_tfar(args->ray, args->N, i), facing > 0 ? 1 : -1, RTCHitN_primID(args->hit, args->N, i)});
-    args->valid[i] = 0;
-  }
-}
-
-// Positions are in the shape's frame, so that Embree's float arithmetic is the same for every size and place.
-std::vector<Vec3> inFrame(const std::vector<Vec3>& positions, Vec3 center, float size) {
+// Positions are in the shape's frame, so that float arithmetic is the same for every size and place.
+std::vector<Vec3> allInFrame(const std::vector<Vec3>& positions, Vec3 center, float size) {
   std::vector<Vec3> local;
   for (const Vec3& p : positions) local.push_back((p - center) / size);
   return local;
@@ -81,61 +51,34 @@ class MeshReference : public Reference {
       : mesh_(withoutDoubles(weldedByPosition(mesh))),
         center_(boundingBox(mesh_).center()),
         size_(boundingBox(mesh_).longestSide()),
-        scene_(inFrame(mesh_.positions, center_, size_), mesh_.triangles) {}
+        scene_(allInFrame(mesh_.positions, center_, size_), mesh_.triangles) {}
 
   double insideLength(const Ray& ray, double length) const override {
-    thread_local std::array<std::vector<Hit>, kPacket> hits;
-    hits[0].clear();
-    HitContext context = contextFor(hits);
-    const Vec3 o = (ray.origin - center_) / size_;
-    RTCRayHit query{};
-    query.ray = {o.x, o.y, o.z, 0, ray.direction.x, ray.direction.y, ray.direction.z, 0, INFINITY, 0xffffffffU, 0, 0};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.handle(), &context.embree, &query);
-    return lengthInside(hits[0], length);
+    thread_local std::vector<RayHit> hits;
+    hits.clear();
+    scene_.forHits({inFrame(ray.origin), ray.direction}, [](const RayHit& hit) {
+      if (hit.sign != 0) hits.push_back(hit);
+    });
+    return lengthInside(hits, length);
   }
 
   void insideLengths(Vec3 origin, std::span<const Vec3> directions, double length, std::span<float> lengths) const override {
-    thread_local std::array<std::vector<Hit>, kPacket> hits;
-    for (size_t first = 0; first < directions.size(); first += kPacket) {
-      const std::span<const Vec3> some = directions.subspan(first, std::min<size_t>(kPacket, directions.size() - first));
-      findHits(origin, some, hits);
+    thread_local std::array<std::vector<RayHit>, kRaysTogether> hits;
+    for (size_t first = 0; first < directions.size(); first += kRaysTogether) {
+      const std::span<const Vec3> some = directions.subspan(first, std::min(kRaysTogether, directions.size() - first));
+      for (std::vector<RayHit>& of_ray : hits) of_ray.clear();
+      scene_.addHits(inFrame(origin), some, hits);
       for (size_t i = 0; i < some.size(); ++i) lengths[first + i] = float(lengthInside(hits[i], length));
     }
   }
-  std::string name() const override { return "Embree, all hits"; }
+  std::string name() const override { return RayScene::kName + std::string(", all hits"); }
 
  private:
-  static HitContext contextFor(std::array<std::vector<Hit>, kPacket>& hits) {
-    HitContext context{};
-    rtcInitIntersectContext(&context.embree);
-    context.embree.filter = recordHits;
-    context.hits = &hits;
-    return context;
-  }
-
-  void findHits(Vec3 origin, std::span<const Vec3> directions, std::array<std::vector<Hit>, kPacket>& hits) const {
-    HitContext context = contextFor(hits);
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    const Vec3 o = (origin - center_) / size_;
-    alignas(32) std::array<int, kPacket> valid{};
-    RTCRayHit8 query{};
-    for (size_t i = 0; i < directions.size(); ++i) {
-      hits[i].clear();
-      valid[i] = -1;
-      query.ray.org_x[i] = o.x, query.ray.org_y[i] = o.y, query.ray.org_z[i] = o.z;
-      query.ray.dir_x[i] = directions[i].x, query.ray.dir_y[i] = directions[i].y, query.ray.dir_z[i] = directions[i].z;
-      query.ray.tfar[i] = INFINITY;
-      query.ray.mask[i] = 0xffffffffU;
-      query.ray.id[i] = unsigned(i);
-      query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    rtcIntersect8(valid.data(), scene_.handle(), &context.embree, &query);
-  }
+  Vec3 inFrame(Vec3 world) const { return (world - center_) / size_; }
 
   // From the hits of one ray, which it sorts.
-  double lengthInside(std::vector<Hit>& hits, double length) const {
-    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.sign < b.sign; });
+  double lengthInside(std::vector<RayHit>& hits, double length) const {
+    std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) { return a.t != b.t ? a.t < b.t : a.sign < b.sign; });
     dropRepeats(hits);
     const double end = length / size_;
     double inside = 0;
@@ -150,7 +93,7 @@ class MeshReference : public Reference {
 
   // A ray through an edge or a corner may hit several of its triangles. These hits are one crossing, recognised by place, sense and a
   // shared corner. Where the ray starts, they enclose nothing.
-  void dropRepeats(std::vector<Hit>& hits) const {
+  void dropRepeats(std::vector<RayHit>& hits) const {
     size_t kept = 0;
     for (size_t i = 0; i < hits.size(); ++i) {
       bool repeated = false;

@@ -1,8 +1,7 @@
-// Embree finds the triangles whose boxes touch the ball around a point. The ball shrinks to the smallest distance so far, which is computed
-// in double. Everything is in the surface's frame, with longest side 1, so that no size is too small or too large for Embree's floats.
+// RayScene finds the triangles whose boxes touch the ball around a point. The ball shrinks to the smallest distance so far, which is
+// computed in double. Everything is in the surface's frame, with longest side 1, so that no size is too small or too large for floats.
 #include "bake/truth/surface_error.h"
 
-#include <embree3/rtcore.h>
 #include <openvdb/math/Proximity.h>
 
 #include <algorithm>
@@ -60,35 +59,23 @@ class NearestTriangle : public NearestSurface {
     double distance = INFINITY;
     SurfacePoint point;
   };
-  Found nearestTo(Vec3 point) const {
-    Search search{this, point, INFINITY, {}};
-    RTCPointQuery query{point.x, point.y, point.z, 0, INFINITY};
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(scene_.handle(), &query, &context, lookAtTriangle, &search);
-    return {std::sqrt(search.squared), search.nearest};
-  }
-
-  struct Search {
-    const NearestTriangle* among;
-    Vec3 point;
-    double squared;
-    SurfacePoint nearest;
-  };
-
-  static bool lookAtTriangle(RTCPointQueryFunctionArguments* arguments) {
-    auto& search = *static_cast<Search*>(arguments->userPtr);
-    const auto& [a, b, c] = search.among->triangles_[arguments->primID];
-    const auto corner = [&](uint32_t v) { return wide(search.among->positions_[v]); };
-    const openvdb::Vec3d point = wide(search.point);
-    openvdb::Vec3d weights;
-    const openvdb::Vec3d nearest = openvdb::math::closestPointOnTriangleToPoint(corner(a), corner(b), corner(c), point, weights);
-    const double squared = (nearest - point).lengthSqr();
-    if (!(squared < search.squared)) return false;
-    search.squared = squared;
-    search.nearest = {{a, b, c}, {float(weights[0]), float(weights[1]), float(weights[2])}};
-    arguments->query->radius = std::nextafter(float(std::sqrt(squared)), INFINITY);
-    return true;
+  Found nearestTo(Vec3 at) const {
+    const openvdb::Vec3d point = wide(at);
+    double least = INFINITY;  // squared
+    Found found;
+    scene_.forTrianglesNear(at, [&](uint32_t triangle, float radius) {
+      const auto& [a, b, c] = triangles_[triangle];
+      openvdb::Vec3d weights;
+      const openvdb::Vec3d nearest =
+          openvdb::math::closestPointOnTriangleToPoint(wide(positions_[a]), wide(positions_[b]), wide(positions_[c]), point, weights);
+      const double squared = (nearest - point).lengthSqr();
+      if (!(squared < least)) return radius;
+      least = squared;
+      found.point = {{a, b, c}, {float(weights[0]), float(weights[1]), float(weights[2])}};
+      return std::nextafter(float(std::sqrt(squared)), INFINITY);
+    });
+    found.distance = std::sqrt(least);
+    return found;
   }
 
   Box frame_;

@@ -10,6 +10,7 @@
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sweep.h"
 #include "bake/truth/peers.h"
+#include "core/ray_scene.h"
 #include "io/report/plot.h"
 #include "pipeline/fields/fields.h"
 #include "pipeline/measure/oracle.h"
@@ -63,15 +64,15 @@ class Curve {
   // The level set counts as the field of these peers; the copy into bricks belongs to our method.
   void addPlainPort(int voxels) { addTreePeer("plain port", plainSphereRays, voxels, 100); }
   void addHdda(int voxels) { addTreePeer("OpenVDB HDDA", hddaSphereRays, voxels, 0); }
-  void addEmbree(int rays) {
+  void addAllHits(int rays) {
     std::unique_ptr<Reference> reference;
     CurveRow row;
-    row.method = "Embree all hits";
+    row.method = RayScene::kName + std::string(" all hits");
     row.sampler = "stratified";
     row.directions = rays;
     row.seconds_field = leastSeconds([&] { reference = meshReference(cloud_.surface); });
     const BakeSettings bake = raySettings(Sampler::kStratified, Quadrature::kCrossing, rays, 100);
-    add(row, [&](Warnings& warnings) { return embreeSphereRays(points(), *reference, bake, warnings); });
+    add(row, [&](Warnings& warnings) { return referenceSphereRays(points(), *reference, bake, warnings); });
   }
 
   std::vector<CurveRow> rows;
@@ -160,7 +161,7 @@ void addAll(Curve& curve, bool closed) {
   for (const int voxels : {35, 100}) curve.addPlainPort(voxels);
   curve.addHdda(100);
   if (closed)
-    for (const int rays : {36, 100, 400}) curve.addEmbree(rays);
+    for (const int rays : {36, 100, 400}) curve.addAllHits(rays);
 
   for (const int voxels : {35, 100}) curve.addRays(voxels, Sampler::kStratified, Quadrature::kCrossing, 100, 100);
   for (const Sampler sampler : {Sampler::kUniform, Sampler::kFibonacci}) curve.addRays(100, sampler, Quadrature::kCrossing, 100, 100);
@@ -179,8 +180,9 @@ void addAll(Curve& curve, bool closed) {
 
 // The same in every plot, whatever else is in it.
 size_t styleOf(const std::string& name) {
-  constexpr std::array<const char*, 7> kNames = {"sweep", "rays", "Embree all hits", "OpenVDB HDDA", "plain port", "", "sweep, level set"};
-  return size_t(std::find(kNames.begin(), kNames.end(), name) - kNames.begin());
+  const std::array<std::string, 7> names = {
+      "sweep", "rays", RayScene::kName + std::string(" all hits"), "OpenVDB HDDA", "plain port", "", "sweep, level set"};
+  return size_t(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 bool isDefault(const CurveRow& row) {

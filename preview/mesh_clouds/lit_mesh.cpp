@@ -1,12 +1,10 @@
 // "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its fields per vertex:
 //   R = T(sun) · lerp(f, 1, n·l/2 + 1/2)      G = T(+Y)
 // with the half-Lambert factor of its project maajor/Mesh-Cloud-Rendering. A transform M moves the thickness o·d as a vector, and normals
-// by the inverse transpose. Embree finds the triangles; distances and barycentric coordinates are computed here, because the last bits of
+// by the inverse transpose. RayScene finds the triangles; distances and barycentric coordinates are computed here, because the last bits of
 // Embree's depend on the CPU. There are other shades for comparison: exact transmittance, and Lambert's surface,
 //   R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky)      R = max(0, n·l), G = ½ + ½ n.y
 #include "preview/mesh_clouds/lit_mesh.h"
-
-#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <cmath>
@@ -173,31 +171,10 @@ bool isBefore(const Crossing& a, const Crossing& b) {
   return a.sign != b.sign ? a.sign > b.sign : a.triangle < b.triangle;
 }
 
-/// Embree passes the context to the filter, which reports the triangle and rejects the hit, so that the search continues.
-template <typename Visit>
-struct AllHits {
-  RTCIntersectContext embree;
-  const Visit* visit;
-};
-
-// Calls visit(triangle) for every triangle that the ray meets, in Embree's order.
+// Calls visit(triangle) for every triangle that the ray meets, in no particular order.
 template <typename Visit>
 void visitTriangles(const LitMesh& lit, const Ray& ray, const Visit& visit) {
-  if (!lit.rays) return;
-  AllHits<Visit> hits{};
-  rtcInitIntersectContext(&hits.embree);
-  hits.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
-    (*reinterpret_cast<const AllHits<Visit>*>(arguments->context)->visit)(RTCHitN_primID(arguments->hit, arguments->N, 0));
-    arguments->valid[0] = 0;
-  };
-  hits.visit = &visit;
-  RTCRayHit query{};
-  query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
-  query.ray.dir_x = ray.direction.x, query.ray.dir_y = ray.direction.y, query.ray.dir_z = ray.direction.z;
-  query.ray.tfar = INFINITY;
-  query.ray.mask = 0xffffffffU;
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(lit.rays->handle(), &hits.embree, &query);
+  if (lit.rays) lit.rays->forHits(ray, [&](const RayHit& hit) { visit(hit.triangle); });
 }
 
 }  // namespace

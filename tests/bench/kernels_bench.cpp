@@ -281,7 +281,7 @@ void addBakeBenches(const BenchInput& input) {
   });
   addBench("peer/embree/chord", chords, [&] {
     Warnings warnings;
-    return bytesOf(embreeSphereRays(input.points(), *input.exact, input.settings, warnings));
+    return bytesOf(referenceSphereRays(input.points(), *input.exact, input.settings, warnings));
   });
 }
 

@@ -12,8 +12,8 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "pipeline/options/presets.h"
-#include "pipeline/sources/grown.h"
 #include "tests/folders.h"
+#include "tests/grown/grown_cloud.h"
 #include "tests/mesh_validity.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
@@ -26,16 +26,6 @@ namespace {
 std::optional<uint64_t> sweepSeeds() {
   const char* text = std::getenv("CLOUDBAKE_SWEEP");
   return text ? std::optional<uint64_t>(std::strtoull(text, nullptr, 10)) : std::nullopt;
-}
-
-Cloud grownCloud(const char* preset, const std::vector<std::string>& texts) {
-  const SourceSettings from = sourceOf(SourceKind::kPreset, preset);
-  GrownSource source = readGrownSource(from);
-  std::vector<Given> given = source.given;
-  for (const Given& one : options(texts, kGrow)) given.push_back(one);
-  BakeReport report;
-  Stopwatch watch;
-  return growCloud(std::move(source), resolve(from, given), std::nullopt, report, watch);
 }
 
 struct Tally {

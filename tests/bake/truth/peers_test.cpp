@@ -133,7 +133,7 @@ TEST(Peers, BallByAll) {
   settings.ray_length = 4.0F;
   Warnings warnings;
   for (const auto& lobes : {plainSphereRays(points, level_set, settings, warnings), hddaSphereRays(points, level_set, settings, warnings),
-                            embreeSphereRays(points, *reference, settings, warnings)}) {
+                            referenceSphereRays(points, *reference, settings, warnings)}) {
     ASSERT_EQ(lobes.size(), mesh.positions.size());
     std::vector<double> angles;
     double density_worst = 0;
@@ -162,7 +162,7 @@ TEST(Peers, EmbreeBallIsNearlyExact) {
   std::vector<Vec3> positions, normals;
   for (size_t v = 0; v < mesh.positions.size(); v += 199) positions.push_back(mesh.positions[v]), normals.push_back(mesh.normals[v]);
   Warnings warnings;
-  const auto lobes = embreeSphereRays({positions, normals}, *meshReference(mesh), settings, warnings);
+  const auto lobes = referenceSphereRays({positions, normals}, *meshReference(mesh), settings, warnings);
   for (size_t v = 0; v < lobes.size(); ++v) {
     EXPECT_LT(angleDegrees(lobes[v].direction, -normals[v]), 0.5);
     EXPECT_NEAR(lobes[v].thickness, 2, 1e-3);
@@ -174,7 +174,8 @@ TEST(Peers, TorusByAll) {
   Warnings warnings;
   const LobeError plain = torusError("plain", plainSphereRays(torus.points(), torus.level_set, torus.settings, warnings), torus.truth),
                   hdda = torusError("hdda", hddaSphereRays(torus.points(), torus.level_set, torus.settings, warnings), torus.truth),
-                  embree = torusError("embree", embreeSphereRays(torus.points(), *torus.reference, torus.settings, warnings), torus.truth);
+                  embree =
+                      torusError("embree", referenceSphereRays(torus.points(), *torus.reference, torus.settings, warnings), torus.truth);
   for (const LobeError& error : {plain, hdda, embree}) {
     EXPECT_GT(error.vertices, 200U);
     EXPECT_LT(error.angle_median_degrees, 0.5);
@@ -194,7 +195,7 @@ TEST(Peers, SameBytesForAnyThreadCount) {
     Warnings warnings;
     return std::array{plainSphereRays(torus.points(), torus.level_set, settings, warnings),
                       hddaSphereRays(torus.points(), torus.level_set, settings, warnings),
-                      embreeSphereRays(torus.points(), *torus.reference, settings, warnings)};
+                      referenceSphereRays(torus.points(), *torus.reference, settings, warnings)};
   };
   const auto first = run();
   for (const size_t threads : {1, 2, 7}) {
@@ -214,6 +215,6 @@ TEST(Peers, UndefinedDirectionsAreCounted) {
   Warnings warnings;
   EXPECT_EQ(plainSphereRays({positions, normals}, level_set, settings, warnings)[0].direction, (Vec3{0, 0, -1}));
   EXPECT_EQ(hddaSphereRays({positions, normals}, level_set, settings, warnings)[0].direction, (Vec3{0, 0, -1}));
-  EXPECT_EQ(embreeSphereRays({positions, {}}, *reference, settings, warnings)[0].direction, (Vec3{0, -1, 0}));
+  EXPECT_EQ(referenceSphereRays({positions, {}}, *reference, settings, warnings)[0].direction, (Vec3{0, -1, 0}));
   EXPECT_EQ(warnings.entries().at(WarningKind::kUndefinedDirection).count, 3U);
 }

@@ -8,6 +8,7 @@
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sweep.h"
 #include "bake/mesh/repair.h"
+#include "core/ray_scene.h"
 #include "io/file/write_file.h"
 #include "io/volume/vdb.h"
 #include "tests/pipeline/pipeline_helpers.h"
@@ -297,7 +298,7 @@ TEST(Fields, TheTruthOfEachKindOfCloud) {
   const Ray through{{-3, 0, 0}, {1, 0, 0}};
   const auto closed = referenceFor(ball(), settings), filled = referenceFor(openBall(true), settings),
              spheres = referenceFor(spheresCloud(), settings), marched = referenceFor(openBall(false), settings);
-  EXPECT_TRUE(contains(closed->name(), "Embree"));
+  EXPECT_TRUE(contains(closed->name(), RayScene::kName));
   EXPECT_EQ(closed->name(), filled->name());
   EXPECT_TRUE(contains(spheres->name(), "sphere"));
   EXPECT_TRUE(contains(marched->name(), "march"));
@@ -313,7 +314,7 @@ TEST(Fields, TheTruthOfEachKindOfCloud) {
 TEST(Fields, SpheresAreTheTruthOnlyWhereTheyAreTheShape) {
   Cloud blended = spheresCloud();
   blended.exact_spheres = false;
-  EXPECT_TRUE(contains(referenceFor(blended, fieldSettings({}))->name(), "Embree"));
+  EXPECT_TRUE(contains(referenceFor(blended, fieldSettings({}))->name(), RayScene::kName));
 }
 
 TEST(Fields, EvenlySpreadIndices) {

@@ -4,6 +4,7 @@
 #include "bake/lobe/directions.h"
 #include "bake/truth/error_metrics.h"
 #include "core/lobe_lighting.h"
+#include "core/ray_scene.h"
 #include "pipeline/lobes/lobes.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
@@ -56,7 +57,7 @@ TEST(Target, AnAngleIsKept) {
   EXPECT_EQ(report.target, 2);
   EXPECT_EQ(report.voxels, *fine.parameters.bake_voxels);
   EXPECT_EQ(report.vertices, 256U);
-  EXPECT_TRUE(contains(report.truth, "Embree"));
+  EXPECT_TRUE(contains(report.truth, RayScene::kName));
   // The sample's error is that of all, within what 256 of them may be off.
   EXPECT_NEAR(report.measured, fine.error.angle_rms_degrees, 0.4);
 }

@@ -5,11 +5,14 @@
 #include <set>
 #include <tuple>
 
+#include "core/ray_scene.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
 namespace {
+
+const std::string kAllHits = RayScene::kName + std::string(" all hits");
 
 Cloud bar() { return cloudOf(boxMesh({0, 0, 0}, {1, 0.1F, 0.12F})); }
 
@@ -39,7 +42,7 @@ TEST(Curve, EveryMethodAndChoiceIsThereOnce) {
     if (row.method == "rays") samplers.insert(row.sampler), quadratures.insert(row.quadrature);
     if (row.method == "sweep") fields.insert(row.field);
   }
-  EXPECT_EQ(methods, (std::set<std::string>{"rays", "sweep", "plain port", "OpenVDB HDDA", "Embree all hits"}));
+  EXPECT_EQ(methods, (std::set<std::string>{"rays", "sweep", "plain port", "OpenVDB HDDA", kAllHits}));
   EXPECT_EQ(samplers, (std::set<std::string>{"stratified", "fibonacci", "uniform"}));
   EXPECT_EQ(quadratures, (std::set<std::string>{"crossing", "midpoint", "end"}));
   EXPECT_EQ(fields, (std::set<std::string>{"coverage", "level set"}));
@@ -87,8 +90,8 @@ TEST(Curve, RowsAreRanked) {
 TEST(Curve, ThePlotShowsEveryMethod) {
   const std::string svg = curveSvg(rows(), "bar & co");
   EXPECT_TRUE(contains(svg, "<svg") && contains(svg, "bar &amp; co: seconds and error"));
-  for (const char* name : {"plain port", "Embree all hits", "OpenVDB HDDA", "rays", "sweep", "sweep, level set"})
-    EXPECT_TRUE(contains(svg, std::string(">") + name + "</text>")) << name;
+  for (const std::string& name : std::vector<std::string>{"plain port", kAllHits, "OpenVDB HDDA", "rays", "sweep", "sweep, level set"})
+    EXPECT_TRUE(contains(svg, ">" + name + "</text>")) << name;
   for (const char* point : {"rays, N=100, fibonacci: ", "sweep, 100 voxels, N=16: ", "sweep, level set, 35 voxels, N=100: "})
     EXPECT_TRUE(contains(svg, point)) << point;
   EXPECT_TRUE(contains(svg, ">default, N=100</text>"));
@@ -97,7 +100,7 @@ TEST(Curve, ThePlotShowsEveryMethod) {
 // A method looks the same in a plot that lacks others, such as that of an open mesh.
 TEST(Curve, AMethodHasOneLook) {
   std::vector<CurveRow> fewer = rows();
-  std::erase_if(fewer, [](const CurveRow& row) { return row.method == "Embree all hits" || row.method == "rays"; });
+  std::erase_if(fewer, [](const CurveRow& row) { return row.method == kAllHits || row.method == "rays"; });
   const auto lookOf = [](const std::string& svg) {
     const size_t end = svg.find("><title>plain port"), begin = svg.rfind("fill=", end);
     return svg.substr(begin, end - begin);

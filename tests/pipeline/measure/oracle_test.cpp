@@ -5,6 +5,7 @@
 
 #include "bake/lobe/sweep.h"
 #include "core/lobe_lighting.h"
+#include "core/ray_scene.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 
@@ -19,7 +20,7 @@ const Cloud& fineBall() {
 TEST(Oracle, KnowsTheBall) {
   const Oracle oracle = askOracle(fineBall(), {}, 20, {1.5F, {}, 4});
   ASSERT_EQ(oracle.vertices, evenlySpread(fineBall().surface.positions.size(), 20));
-  EXPECT_TRUE(contains(oracle.name, "Embree"));
+  EXPECT_TRUE(contains(oracle.name, RayScene::kName));
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   EXPECT_EQ(oracle.axes, sweepAxes(512));
   ASSERT_EQ(oracle.lengths.size(), 20U * 512);
