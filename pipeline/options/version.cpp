@@ -23,7 +23,9 @@ std::string versionText() {
   const Library libraries[] = {
       {"OpenVDB", CLOUDBAKE_OPENVDB_VERSION, ""},
       {"oneTBB", TBB_VERSION_STRING, TBB_runtime_version()},
+#ifndef CLOUDBAKE_PORTABLE
       {"Embree", CLOUDBAKE_EMBREE_VERSION, ""},
+#endif
       {"assimp", CLOUDBAKE_ASSIMP_VERSION, ""},
       {"Draco", CLOUDBAKE_DRACO_VERSION, ""},
 #ifdef CLOUDBAKE_CGAL
@@ -44,6 +46,9 @@ std::string versionText() {
     text += std::string("\n") + name + " " + built_with;
     if (!runs_with.empty() && runs_with != built_with) text += ", runs with " + runs_with;
   }
+#ifdef CLOUDBAKE_PORTABLE
+  text += "\nportable: without Embree";
+#endif
 #ifndef CLOUDBAKE_CGAL
   text += "\nwithout CGAL";
 #endif
