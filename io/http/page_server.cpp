@@ -41,7 +41,7 @@ namespace {
 
 static_assert(std::string_view(CPPHTTPLIB_VERSION).starts_with("0.11."),
               "process_request and svr_sock_ are insides of cpp-httplib 0.11: compare them with those of this version");
-#ifndef CPPHTTPLIB_OPENSSL_SUPPORT
+#if !defined(CPPHTTPLIB_OPENSSL_SUPPORT) && !defined(CLOUDBAKE_PORTABLE)
 #error "The library was compiled with options (HTTPLIB_CFLAGS in CMakeLists.txt) on which the sizes of its structs depend"
 #endif
 
