@@ -85,32 +85,6 @@ export function compareAssets(first, second, limit = 1e-4) {
   return result;
 }
 
-export const evenDirections = count => Array.from({ length: count }, (_, i) => {
-  const z = 1 - (2 * i + 1) / count, a = i * Math.PI * (3 - Math.sqrt(5)), r = Math.sqrt(1 - z * z);
-  return [r * Math.cos(a), r * Math.sin(a), z];
-});
-
-// The share of vertices that fitted lobes of two assets light alike, at both ends of the extinction. Meshes may turn, because the suns are
-// spread evenly.
-export function shareOfSameLight(first, second, limit = 1e-3) {
-  const a = partsOf(first), b = partsOf(second), suns = evenDirections(100);
-  const { exponent, bias, extinction_range } = a.json.asset.extras.cloudbake;
-  let alike = 0, vertices = 0;
-  a.parts.forEach(({ lobes, to_scene }, part) => {
-    const others = b.parts[part].lobes, scale = scaleOf(to_scene);
-    const lengthOf = (all, v, [x, y, z]) => {
-      const half_cosine = Math.max(0, (x * all[v] + y * all[v + 1] + z * all[v + 2]) / 2 + 0.5);
-      return Math.max(0, half_cosine ** exponent * all[v + 3] * scale + bias);
-    };
-    for (let v = 0; v < lobes.length; v += 4, ++vertices)
-      alike += suns.every(sun => {
-        const one = lengthOf(lobes, v, sun), other = lengthOf(others, v, sun);
-        return extinction_range.every(extinction => Math.abs(Math.exp(-extinction * one) - Math.exp(-extinction * other)) <= limit);
-      });
-  });
-  return alike / vertices;
-}
-
 // The first place where two JSON values differ, numbers by more than `tolerance` of themselves; nothing if they are alike.
 export function difference(a, b, tolerance = 0, path = '') {
   const are_both = type => typeof a === type && typeof b === type;
