@@ -44,7 +44,8 @@ install(TARGETS ${late_libraries} LIBRARY DESTINATION lib)
 # The library, with the headers that its own header needs.
 install(TARGETS cloudbake_shared EXPORT cloudbakeLibrary LIBRARY DESTINATION lib INCLUDES DESTINATION include/cloudbake)
 install(FILES pipeline/library/cloudbake.h DESTINATION include/cloudbake)
-install(FILES core/affine.h core/error.h core/lobe_lighting.h core/portable_math.h core/types.h core/vec3.h core/warnings.h DESTINATION include/cloudbake/core)
+install(FILES core/affine.h core/error.h core/lobe_lighting.h core/portable_math.h core/types.h core/vec3.h core/warnings.h
+        DESTINATION include/cloudbake/core)
 # The Python module. Debian's Python looks into lib/python3/dist-packages below /usr; elsewhere PYTHONPATH leads to it.
 if(CLOUDBAKE_PYTHON)
   set(CLOUDBAKE_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING "Folder below the prefix that the Python module is installed into")
