@@ -91,6 +91,15 @@ export function compare(a, b) {
   return { same_size: a.length === b.length, equal: equal / a.length, near: near / a.length, largest };
 }
 
+export const percent = share => `${(100 * share).toFixed(3)} %`;
+
+// The picture after a line of code, in which `this` is the viewer.
+export async function after(page, code) {
+  await page.evaluate(text => new Function(text).call(window.viewer), code);
+  await page.waitForSelector('html[data-state="ready"]');
+  return canvasValues(page);
+}
+
 // The pictures that are compared, and the address of a page that shows nothing else.
 export const SIZE = [360, 240], bare = `ui=0&size=${SIZE.join('x')}`;
 

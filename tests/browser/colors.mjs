@@ -3,7 +3,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, compare, demand, pngValues, settled, testFolder, testPage } from './browser.mjs';
+import { after, canvasValues, compare, demand, percent, pngValues, settled, testFolder, testPage } from './browser.mjs';
 import { changedGlb } from './glb.mjs';
 
 const { folder, run, open } = testFolder(), SIZE = [320, 200], BOUND = 0.998;
@@ -23,9 +23,6 @@ const SCENES = {
   'a field and white clouds': `${HEAD}[light]\nshadows = false\n${FIELD}[[cloud]]\nfile = 'white.glb'\nscale = 0.5\n`,
   'over terrain': `${HEAD}[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n${CLOUDS}`,
 };
-
-const share = (page, right) => canvasValues(page).then(values => compare(values, right).near);
-const percent = value => `${(100 * value).toFixed(3)} %`;
 
 // An OBJ of a ball with bumps: red to green from left to right and blue in stripes, or with a texture over it.
 function ballText(material) {
@@ -54,17 +51,10 @@ function ballText(material) {
   return `${[...head, ...lines, ...faces.map(face => `f ${face.map(v => `${v}/${v}`).join(' ')}`)].join('\n')}\n`;
 }
 
-// The page after a line of code, in which `this` is the viewer.
-async function after(page, code) {
-  await page.evaluate(text => new Function(text).call(window.viewer), code);
-  await page.waitForSelector('html[data-state="ready"]');
-}
-
 async function isThatOfPreview(page, name, right) {
-  const near = await share(page, right);
-  demand(near >= BOUND, `${name}: ${percent(near)} of values are within 2 of preview's (at least ${percent(BOUND)})`);
-  await after(page, 'this.renderer.look.own_colors = false, this.change({})');
-  const white = await share(page, right);
+  const { near } = compare(await canvasValues(page), right);
+  demand(near >= BOUND, `${name}: ${percent(near)} of values are within 1 of preview's (at least ${percent(BOUND)})`);
+  const { near: white } = compare(await after(page, 'this.renderer.look.own_colors = false, this.change({})'), right);
   demand(white < 0.97, `${name}, in white: only ${percent(white)}`);
 }
 
@@ -108,9 +98,11 @@ async function filesAreThoseOfPreview(page) {
     run('view', `${name}.glb`, '-o', 'page.html');
     run('view', name === 'colored' ? 'textured.glb' : 'colored.glb', '-o', 'other.html');
     await open(page, 'page.html', `ui=0&size=${size}`);
-    const right = await pngValues(page, join(folder, 'picture.png')), opened = await share(page, right);
+    const right = await pngValues(page, join(folder, 'picture.png'));
+    const shareOfCanvas = async () => compare(await canvasValues(page), right).near;
+    const opened = await shareOfCanvas();
     await open(page, 'other.html', `ui=0&size=${size}`);
-    const other = await share(page, right), told = await page.evaluate(async ([bytes, file]) => {
+    const other = await shareOfCanvas(), told = await page.evaluate(async ([bytes, file]) => {
       const { viewer } = window, { camera, view } = viewer.scene;
       await viewer.open(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], file));
       Object.assign(viewer.scene, { camera, view });  // the page chooses its own
@@ -118,9 +110,9 @@ async function filesAreThoseOfPreview(page) {
       return document.getElementById('message-text').textContent;
     }, [readFileSync(join(folder, `${name}.glb`)).toString('base64'), `${name}.glb`]);
     await settled(page);
-    const dropped = await share(page, right);
+    const dropped = await shareOfCanvas();
     demand(opened >= BOUND && dropped >= BOUND && other < 0.97,
-      `${name}: ${percent(opened)} within 2 of preview's, dropped on another page ${percent(dropped)}, before it only ${percent(other)}`);
+      `${name}: ${percent(opened)} within 1 of preview's, dropped on another page ${percent(dropped)}, before it only ${percent(other)}`);
     demand(told.includes('material 0: its texture cannot be read') === (name === 'lost'), `${name} says: ${told || 'nothing'}`);
   }
 }

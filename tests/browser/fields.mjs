@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { placeAt } from '../../viewer/fields.js';
-import { canvasValues, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { after, canvasValues, demand, percent, pngValues, testFolder, testPage } from './browser.mjs';
 
 const { folder, run, open } = testFolder();
 const SIZE = [320, 180], BOUND = 0.999;  // the share of values that must be within 2 of preview's
@@ -30,18 +30,11 @@ function compare(a, b) {
   return { near: a.length === b.length ? near / a.length : 0, largest };
 }
 
-const percent = share => `${(100 * share).toFixed(3)} %`, bare = `ui=0&size=${SIZE.join('x')}`;
+const bare = `ui=0&size=${SIZE.join('x')}`;
 
 function drawn(...words) {
   run('preview', ...words, '--size', SIZE.join('x'), '-o', 'picture.png', '--json', 'report.json');
   return join(folder, 'picture.png');
-}
-
-// The picture after a line of code, in which `this` is the viewer.
-async function after(page, code) {
-  await page.evaluate(text => new Function(text).call(window.viewer), code);
-  await page.waitForSelector('html[data-state="ready"]');
-  return canvasValues(page);
 }
 
 async function fields(page) {

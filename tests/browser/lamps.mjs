@@ -3,7 +3,7 @@
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { after, canvasValues, compare, demand, percent, pngValues, testFolder, testPage } from './browser.mjs';
 
 const { folder, run, open } = testFolder(), SIZE = [320, 200], BOUND = 0.998;
 const HEAD = '[picture]\nwidth = 320\nheight = 200\ntime = 30\n[camera]\nposition = [0, 2, 12]\ntarget = [0, 1.5, 0]\nfov = 40\n' +
@@ -21,28 +21,17 @@ const SCENES = {
   'lightning over terrain': `${HEAD}${LAMPS}${LIGHTNING}at = 29.98\n[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n${CLOUDS}`,
 };
 
-const share = (page, right) => canvasValues(page).then(values => compare(values, right).near);
-const percent = value => `${(100 * value).toFixed(3)} %`;
-
-// The page after a line of code, in which `this` is the viewer.
-async function after(page, code) {
-  await page.evaluate(text => new Function(text).call(window.viewer), code);
-  await page.waitForSelector('html[data-state="ready"]');
-}
-
 async function areThoseOfPreview(page) {
   for (const [name, text] of Object.entries(SCENES)) {
     writeFileSync(join(folder, 'scene.toml'), text);
     run('view', '--scene', 'scene.toml', '-o', 'page.html');
     run('preview', '--scene', 'scene.toml', '--size', SIZE.join('x'), '-o', 'picture.png');
     await open(page, 'page.html', `ui=0&size=${SIZE.join('x')}`);
-    const right = await pngValues(page, join(folder, 'picture.png')), near = await share(page, right);
-    demand(near >= BOUND, `${name}: ${percent(near)} of values are within 2 of preview's (at least ${percent(BOUND)})`);
-    await after(page, 'this.scene.lamps[0].strength *= 1.5, this.change({})');
-    const brighter = await share(page, right);
+    const right = await pngValues(page, join(folder, 'picture.png')), { near } = compare(await canvasValues(page), right);
+    demand(near >= BOUND, `${name}: ${percent(near)} of values are within 1 of preview's (at least ${percent(BOUND)})`);
+    const { near: brighter } = compare(await after(page, 'this.scene.lamps[0].strength *= 1.5, this.change({})'), right);
     demand(brighter < 0.99, `${name}, with a lamp that is too bright: only ${percent(brighter)}`);
-    await after(page, 'this.scene.lamps = undefined, this.change({})');
-    const dark = await share(page, right);
+    const { near: dark } = compare(await after(page, 'this.scene.lamps = undefined, this.change({})'), right);
     demand(dark < 0.97, `${name}, without lamps: only ${percent(dark)}`);
   }
 }
@@ -55,18 +44,18 @@ async function flashesFollowTheTime(page) {
   let lit = 0, dark = 0;
   for (const time of [30, 31.3, 70.4, 62.31]) {
     run('preview', '--scene', 'scene.toml', '--time', String(time), '--size', SIZE.join('x'), '-o', 'picture.png');
-    await after(page, `this.clock.move(${time} - this.clock.time), this.request()`);
-    const near = await share(page, await pngValues(page, join(folder, 'picture.png')));
-    demand(near >= BOUND, `flashes at ${time} s: ${percent(near)} of values are within 2 of preview's`);
+    const shown_then = await after(page, `this.clock.move(${time} - this.clock.time), this.request()`);
+    const { near } = compare(shown_then, await pngValues(page, join(folder, 'picture.png')));
+    demand(near >= BOUND, `flashes at ${time} s: ${percent(near)} of values are within 1 of preview's`);
     const shown = await page.evaluate(() => window.viewer.renderer.shown.length);
     lit += shown === 3, dark += shown === 1;
   }
   // A moment in the first flash of the scene, which the page knows.
   const start = await page.evaluate(() => window.viewer.scene.lamps[0].flashes[0].strokes[0][0] + 0.01);
   run('preview', '--scene', 'scene.toml', '--time', String(start), '--size', SIZE.join('x'), '-o', 'picture.png');
-  await after(page, `this.clock.move(${start} - this.clock.time), this.request()`);
-  const near = await share(page, await pngValues(page, join(folder, 'picture.png')));
-  demand(near >= BOUND, `in the first flash: ${percent(near)} of values are within 2 of preview's`);
+  const flash = await after(page, `this.clock.move(${start} - this.clock.time), this.request()`);
+  const { near } = compare(flash, await pngValues(page, join(folder, 'picture.png')));
+  demand(near >= BOUND, `in the first flash: ${percent(near)} of values are within 1 of preview's`);
   lit += await page.evaluate(() => window.viewer.renderer.shown.length === 3);
   demand(lit > 0 && dark > 0, `${lit} moments are lit, ${dark} are dark`);
 }

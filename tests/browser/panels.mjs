@@ -3,7 +3,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, compare, demand, pngValues, settled, testFolder, testPage, unfold } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, percent, pngValues, settled, testFolder, testPage, unfold } from './browser.mjs';
 import { cutHarmonics } from './glb.mjs';
 
 const { source, folder, run, open } = testFolder();
@@ -48,7 +48,6 @@ async function panelsOf(page, sheet, figures) {
 
 const rms = (a, b) => Math.sqrt(a.reduce((sum, x, i) => sum + (x - b[i]) ** 2, 0) / a.length) / 255;
 
-const percent = share => `${(100 * share).toFixed(3)} %`;
 
 // Each light as the panel of its name, and not as another one.
 async function panels(page) {

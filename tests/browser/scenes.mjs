@@ -6,7 +6,7 @@ import { join } from 'node:path';
 
 import { circleThrough, noonAzimuthAfter, sunOfDay } from '../../viewer/hours.js';
 import { directionFromAngles } from '../../viewer/vectors.js';
-import { canvasValues, demand, pngValues, staysStill, testFolder, testPage } from './browser.mjs';
+import { after, canvasValues, demand, percent, pngValues, staysStill, testFolder, testPage } from './browser.mjs';
 import { LAYER_SCENES, SCENES, SIZE, makeFiles } from './layer_scenes.mjs';
 
 const { binary, source, folder, run, open } = testFolder();
@@ -66,20 +66,11 @@ function compare(a, b) {
   return { equal: equal / a.length, near: a.length === b.length ? near / a.length : 0, largest };
 }
 
-const percent = share => `${(100 * share).toFixed(3)} %`;
-
 async function pictures(page, name, file) {
   run('view', '--scene', file, '-o', 'page.html');
   run('preview', '--scene', file, '--size', SIZE.join('x'), '-o', 'picture.png');
   await open(page, 'page.html', `ui=0&size=${SIZE.join('x')}`);
   return pngValues(page, join(folder, 'picture.png'));
-}
-
-// The picture after a line of code, in which `this` is the viewer.
-async function after(page, code) {
-  await page.evaluate(text => new Function(text).call(window.viewer), code);
-  await page.waitForSelector('html[data-state="ready"]');
-  return canvasValues(page);
 }
 
 // The page after a change of its scene.
