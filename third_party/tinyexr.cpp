@@ -1,7 +1,4 @@
-// The functions of libraries that are single headers.
-#define TINYOBJLOADER_IMPLEMENTATION
-#include <tiny_obj_loader.h>
-
+// The functions of tinyexr, with zlib in place of miniz.
 #define TINYEXR_USE_MINIZ 0
 #include <zlib.h>
 #define TINYEXR_IMPLEMENTATION

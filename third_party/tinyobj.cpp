@@ -1,3 +1,4 @@
-// The one function of tinyobjloader that io/sculpt/read_mtl.cpp uses. Debian has it compiled, but not for WebAssembly.
+// The functions of tinyobjloader, of which io/sculpt/read_mtl.cpp uses one. Debian has them compiled, but not for WebAssembly, and not as a
+// static library.
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <tiny_obj_loader.h>

@@ -51,20 +51,21 @@ function colorAt({ image: { width, height, bytes }, wraps, offset, scale, rotati
   return color;
 }
 
-async function readTexture(reader, { index, texCoord = 0, extensions }) {
+// `images`: those of the file that were asked for.
+async function readTexture(reader, images, { index, texCoord = 0, extensions }) {
   const { json } = reader, { source, sampler } = json.textures[index], transform = extensions?.KHR_texture_transform ?? {};
   const { offset = [0, 0], scale = [1, 1], rotation = 0, texCoord: set = texCoord } = transform;
   const { wrapS = 10497, wrapT = 10497 } = json.samplers?.[sampler] ?? {};
-  return { image: await imageAt(reader, source), set, offset, scale, rotation, wraps: [WRAPS[wrapS], WRAPS[wrapT]] };
+  return { image: await (images[source] ??= imageAt(reader, source)), set, offset, scale, rotation, wraps: [WRAPS[wrapS], WRAPS[wrapT]] };
 }
 
 // A grey without a texture, or with a white one, is that of a modelling program: nobody has set it.
-async function readMaterial(reader, { pbrMetallicRoughness: pbr }, note) {
+async function readMaterial(reader, images, { pbrMetallicRoughness: pbr }, note) {
   const { baseColorFactor = WHITE, baseColorTexture } = pbr ?? {};
   const factor = baseColorFactor.slice(0, 3).map(limited), is_grey = factor[0] === factor[1] && factor[1] === factor[2];
   if (!baseColorTexture) return { factor: is_grey ? WHITE : factor };
   try {
-    const texture = await readTexture(reader, baseColorTexture), { bytes } = texture.image;
+    const texture = await readTexture(reader, images, baseColorTexture), { bytes } = texture.image;
     if (is_grey && bytes.every((byte, i) => byte === 255 || i % 4 === 3)) return { factor: WHITE };
     return { factor, texture };
   } catch (error) {
@@ -75,8 +76,10 @@ async function readMaterial(reader, { pbrMetallicRoughness: pbr }, note) {
 
 /** The colours of all materials of a file. `note` takes what cannot be read. @param {import('./glb.js').GlbReader} reader */
 export function ownMaterials(reader, note) {
+  /** @type {Record<number, Promise<any>>} */
+  const images = {};
   return Promise.all((reader.json.materials ?? []).map((material, i) =>
-    readMaterial(reader, material, text => note(`material ${i}: ${text}`)).catch(error => {
+    readMaterial(reader, images, material, text => note(`material ${i}: ${text}`)).catch(error => {
       note(`material ${i} cannot be read (${error.message}): white is shown in its place`);
       return { factor: WHITE };
     })));
