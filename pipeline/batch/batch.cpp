@@ -15,7 +15,7 @@
 #include "io/file/own_file.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
-#include "pipeline/batch/schedule.h"
+#include "pipeline/batch/make_assets.h"
 #include "pipeline/batch/thumbnail.h"
 #include "pipeline/fields/stopwatch.h"
 #include "pipeline/options/run_files.h"
@@ -216,7 +216,7 @@ BatchReport reportOf(const Settings& settings, const BatchPlan& plan) {
   report.output = settings.output.file.string();
   report.shard = settings.batch.shard;
   report.shards = settings.batch.shards;
-  report.threads = int(threadCount());
+  report.threads = int(assetsAtOnce(settings));
   return report;
 }
 

@@ -1,0 +1,383 @@
+// The system calls of the program as functions of Node. Arguments are those of Linux on a machine of 32 bits; a result below 0 is an errno.
+import { constants, readdirSync, statSync } from 'node:fs';
+import * as fs from 'node:fs';
+import { availableParallelism, cpus, hostname, totalmem } from 'node:os';
+import { isatty } from 'node:tty';
+import { MessageChannel, receiveMessageOnPort } from 'node:worker_threads';
+
+const windows = process.platform === 'win32';
+const PAGE = 65536, MOST = 2 ** 32 - PAGE;  // bytes of memory
+const BROKEN_PIPE = 141;                    // the exit code
+const FIRST_FOLDER = 1 << 20;               // folders that are open have numbers from here
+
+// Flags of open(2) in musl, and what Node calls them.
+const O_DIRECTORY = 0o200000, O_APPEND = 0o2000;
+const OPEN_FLAGS = [[1, 'O_WRONLY'], [2, 'O_RDWR'], [0o100, 'O_CREAT'], [0o200, 'O_EXCL'], [0o400, 'O_NOCTTY'], [0o1000, 'O_TRUNC'],
+  [O_APPEND, 'O_APPEND'], [0o4000, 'O_NONBLOCK'], [0o400000, 'O_NOFOLLOW']];
+const AT_FDCWD = -100, AT_REMOVEDIR = 0x200, AT_SYMLINK_NOFOLLOW = 0x100, AT_EMPTY_PATH = 0x1000;
+const TIOCGWINSZ = 0x5413;
+const KINDS = [['isFile', 8], ['isDirectory', 4], ['isSymbolicLink', 10], ['isFIFO', 1], ['isCharacterDevice', 2], ['isBlockDevice', 6],
+  ['isSocket', 12]];
+const EINVAL = 'EINVAL', sleeper = new Int32Array(new SharedArrayBuffer(4));
+
+class CallError extends Error {
+  constructor(code) {
+    super(code);
+    this.code = code;
+  }
+}
+
+export class Host {
+  /** @type {() => Record<string, number>} */ errno = () => ({});
+  /** @type {() => Uint8Array} */ bytes = () => new Uint8Array();
+  memoryLimit = MOST;
+  #files = new Map();  // of descriptors: { at }, the place where is read and written; none of what has no places
+  #folders = new Map();
+  #columns;
+  #processes = new Map();  // by number: { port, bell, state }
+  #started = 0;
+  #seenSignal = 0;
+  #message = { kind: 0, bytes: new Uint8Array() };
+
+  /**
+   * What a process is given: `launcher` and, in a helper, `parent` are ports; a bell counts what was sent to it.
+   * @param {{ columns: number, program: string, signals: Int32Array, bell: Int32Array, parentBell?: Int32Array, parent?: MessagePort,
+   *   input?: Uint8Array, launcher: MessagePort }} given
+   */
+  constructor({ columns, program, signals, bell, parentBell, parent, input, launcher }) {
+    this.#columns = columns;
+    Object.assign(this, { program, signals, bell, launcher, input });
+    if (parent) this.#processes.set(0, { port: parent, bell: parentBell });
+    for (const [name, call] of Object.entries(calls))
+      this[name] = (...words) => {
+        try {
+          return call.apply(this, words) ?? 0;
+        } catch (error) {
+          const number = this.errno()[error.code];
+          if (number === undefined) throw error;
+          return name.startsWith('fd_') ? number : -number;
+        }
+      };
+  }
+
+  // Emscripten writes a byte for each character.
+  environment() {
+    return Object.fromEntries(Object.entries(process.env).map(([name, value]) => [name, Buffer.from(value).toString('latin1')]));
+  }
+
+  grownMemory(wanted, now) {
+    if (wanted > this.memoryLimit) return 0;
+    const more = Math.min(now * 1.2, now + 96 * 2 ** 20);
+    return Math.floor(Math.min(this.memoryLimit, Math.max(wanted + PAGE - 1, more)) / PAGE) * PAGE;
+  }
+
+  cloudbake_limit_memory(bytes) { this.memoryLimit = Math.min(MOST, Math.ceil(bytes / PAGE) * PAGE); }
+  cloudbake_memory_limit() { return this.memoryLimit; }
+  cloudbake_machine_memory() {
+    const allowed = process.constrainedMemory?.() ?? 0;
+    return allowed > 0 ? Math.min(allowed, totalmem()) : totalmem();
+  }
+  cloudbake_processors() { return availableParallelism?.() ?? cpus().length; }
+
+  // --- Processes ---
+
+  cloudbake_process_number() { return process.pid; }
+  cloudbake_is_running(number) {
+    try {
+      process.kill(number, 0);
+    } catch (error) {
+      return Number(error.code === 'EPERM');
+    }
+    return 1;
+  }
+  cloudbake_machine_name(at, size) {
+    const name = Buffer.from(hostname()).subarray(0, size - 1);
+    this.bytesAt(at, size).fill(0).set(name);
+  }
+  cloudbake_temporary(path, exists) { this.launcher.postMessage({ temporary: this.textAt(path), exists: exists !== 0 }); }
+  cloudbake_note_signals() { Atomics.store(this.signals, 1, 1); }
+  cloudbake_noted_signal() { return Atomics.load(this.signals, 0); }
+
+  cloudbake_start(words) {
+    const begin = words >>> 0, bytes = this.bytes(), list = [];
+    for (let at = begin; bytes[at] !== 0;) {
+      const end = bytes.indexOf(0, at);
+      list.push(Buffer.from(bytes.slice(at, end)).toString());
+      at = end + 1;
+    }
+    const { port1, port2 } = new MessageChannel();
+    // The state of a process: 0 it runs, 1 it has ended.
+    const number = ++this.#started, bell = new Int32Array(new SharedArrayBuffer(4)), state = new Int32Array(new SharedArrayBuffer(4));
+    this.#processes.set(number, { port: port1, bell, state });
+    this.launcher.postMessage({ start: list, number, parent: port2, bell, parentBell: this.bell, state, input: this.input }, [port2]);
+    return number;
+  }
+  cloudbake_stop(number) {
+    this.launcher.postMessage({ stop: number });
+    this.#processes.delete(number);
+  }
+  cloudbake_send(number, at, size) { this.post(number, { kind: 0, bytes: this.bytes().slice(at >>> 0, (at >>> 0) + size) }); }
+  post(number, message) {
+    const to = this.#processes.get(number);
+    if (!to) return;
+    to.port.postMessage(message);
+    Atomics.add(to.bell, 0, 1);
+    Atomics.notify(to.bell, 0);
+  }
+  cloudbake_receive(milliseconds) {
+    const end = milliseconds < 0 ? Infinity : performance.now() + milliseconds;
+    for (;;) {
+      const rung = Atomics.load(this.bell, 0);
+      for (const [number, { port, state }] of this.#processes) {
+        const has_ended = state && Atomics.load(state, 0) === 1;
+        const received = receiveMessageOnPort(port);
+        if (received) {
+          this.#message = received.message;
+          return number;
+        }
+        if (!has_ended) continue;
+        this.#processes.delete(number);
+        this.#message = { kind: 2, bytes: Buffer.from('it ended without a word') };
+        return number;
+      }
+      const left = end - performance.now(), signal = Atomics.load(this.signals, 0);
+      if (left <= 0 || signal !== this.#seenSignal) {
+        this.#seenSignal = signal;
+        return -1;
+      }
+      Atomics.wait(this.bell, 0, rung, left);
+    }
+  }
+  cloudbake_message_kind() { return this.#message.kind; }
+  cloudbake_message_size() { return this.#message.bytes.length; }
+  cloudbake_take_message(at) { this.bytesAt(at, this.#message.bytes.length).set(this.#message.bytes); }
+
+  // --- Arguments ---
+
+  view() { return new DataView(this.bytes().buffer); }
+  bytesAt(at, count) { return this.bytes().subarray(at >>> 0, (at >>> 0) + count); }
+  textAt(at) {
+    const bytes = this.bytes(), begin = at >>> 0;
+    return Buffer.from(bytes.slice(begin, bytes.indexOf(0, begin)));
+  }
+  // A path, as bytes: names need not be text. On Windows a path from a drive is /C:/… for the program.
+  pathAt(at, folder = AT_FDCWD) {
+    let path = at ? this.textAt(at) : Buffer.alloc(0);
+    if (path.length === 0) throw new CallError('ENOENT');
+    if (path.equals(Buffer.from('/proc/self/exe'))) path = Buffer.from(this.program);
+    if (folder !== AT_FDCWD && path[0] !== 47) {
+      const open = this.#folders.get(folder);
+      if (!open) throw new CallError('ENOTDIR');
+      path = Buffer.concat([open.path, Buffer.from('/'), path]);
+    }
+    return windows ? path.toString().replace(/^\/([A-Za-z]:)/, '$1') : path;
+  }
+  // The third or fourth argument of a function with "...".
+  argument(at) { return at ? this.view().getInt32(at >>> 0, true) : 0; }
+
+  writeStat(at, stat) {
+    const view = this.view(), place = at >>> 0, put = (offset, value) => view.setUint32(place + offset, Number(BigInt.asUintN(32, value)), true);
+    for (const [offset, value] of [[0, stat.dev], [4, 0n], [8, stat.ino], [12, stat.mode], [16, stat.nlink], [20, stat.uid], [24, stat.gid],
+      [28, stat.rdev], [32, 0n], [48, stat.blksize ?? 4096n], [52, stat.blocks ?? 0n]]) put(offset, value);
+    view.setBigInt64(place + 40, stat.size, true);
+    for (const [offset, time] of [[56, stat.atimeNs], [64, stat.mtimeNs], [72, stat.ctimeNs]]) {
+      put(offset, time / 1000000000n);
+      put(offset + 4, time % 1000000000n);
+    }
+    view.setBigUint64(place + 80, BigInt.asUintN(64, stat.ino), true);
+  }
+
+  // --- Descriptors ---
+
+  // Where is read or written; null leaves it to the system.
+  placeOf(descriptor) {
+    if (this.#folders.has(descriptor)) throw new CallError('EISDIR');
+    return this.#files.get(descriptor)?.at ?? null;
+  }
+  move(descriptor, count) {
+    const file = this.#files.get(descriptor);
+    if (file && file.at !== null) file.at += count;
+  }
+  open(path, flags, mode) {
+    let given = 0;
+    for (const [flag, name] of OPEN_FLAGS) if (flags & flag) given |= constants[name] ?? 0;
+    if (flags & O_DIRECTORY) {
+      if (!statSync(path).isDirectory()) throw new CallError('ENOTDIR');
+      const number = FIRST_FOLDER + (this.folderCount = (this.folderCount ?? 0) + 1);
+      this.#folders.set(number, { path: Buffer.from(path), entries: null, next: 0 });
+      return number;
+    }
+    const number = fs.openSync(path, given, mode);
+    const stat = fs.fstatSync(number);
+    this.#files.set(number, { at: stat.isFile() && !(flags & O_APPEND) ? 0 : null });
+    return number;
+  }
+  forBuffers(list, count, transfer) {
+    let all = 0;
+    for (let i = 0; i < count; ++i) {
+      const view = this.view(), at = (list >>> 0) + 8 * i, size = Math.min(view.getUint32(at + 4, true), 2 ** 30);
+      if (size === 0) continue;
+      const done = transfer(this.bytesAt(view.getUint32(at, true), size));
+      all += done;
+      if (done < size) break;
+    }
+    return all;
+  }
+  // Node makes no difference between what blocks and what does not; a pipe of another program may be full or empty for now.
+  waiting(action) {
+    for (;;) {
+      try {
+        return action();
+      } catch (error) {
+        if (error.code === 'EOF') return 0;  // on Windows
+        if (error.code === 'EPIPE') this.endByPipe();
+        if (error.code !== 'EAGAIN') throw error;
+        Atomics.wait(sleeper, 0, 0, 2);
+      }
+    }
+  }
+
+  // As by SIGPIPE: without a word, at once.
+  endByPipe() {
+    this.launcher.postMessage({ ended: { code: BROKEN_PIPE } });
+    Atomics.wait(sleeper, 0, 0);
+  }
+
+  columns() { return this.#columns; }
+  folder(descriptor) { return this.#folders.get(descriptor); }
+  forget(descriptor) { return this.#folders.delete(descriptor) || (this.#files.delete(descriptor), false); }
+  fileAt(descriptor) { return this.#files.get(descriptor); }
+}
+
+// Functions whose errors become errnos. `this` is the host.
+const calls = {
+  cloudbake_keep_input() { this.input = fs.readFileSync(0); },
+  // Seconds and microseconds of the processor, for the program and for the system, then the most memory in kB
+  __syscall_getrusage(who, at) {
+    const { userCPUTime, systemCPUTime, maxRSS } = process.resourceUsage(), numbers = new Array(34).fill(0);
+    if (who === 0)
+      numbers.splice(0, 5, Math.floor(userCPUTime / 1e6), userCPUTime % 1e6, Math.floor(systemCPUTime / 1e6), systemCPUTime % 1e6, maxRSS);
+    numbers.forEach((number, i) => this.view().setInt32((at >>> 0) + 4 * i, number, true));
+  },
+  __syscall_open(path, flags, rest) { return this.open(this.pathAt(path), flags, this.argument(rest)); },
+  __syscall_openat(folder, path, flags, rest) { return this.open(this.pathAt(path, folder), flags, this.argument(rest)); },
+  __syscall_stat64(path, at) { this.writeStat(at, fs.statSync(this.pathAt(path), { bigint: true })); },
+  __syscall_lstat64(path, at) { this.writeStat(at, fs.lstatSync(this.pathAt(path), { bigint: true })); },
+  __syscall_fstat64(descriptor, at) {
+    const folder = this.folder(descriptor);
+    this.writeStat(at, folder ? statSync(folder.path, { bigint: true }) : fs.fstatSync(descriptor, { bigint: true }));
+  },
+  __syscall_fstatat64(folder, path, at, flags) {
+    if (flags & AT_EMPTY_PATH && this.textAt(path).length === 0) return this.__syscall_fstat64(folder, at);
+    const name = this.pathAt(path, folder);
+    this.writeStat(at, flags & AT_SYMLINK_NOFOLLOW ? fs.lstatSync(name, { bigint: true }) : fs.statSync(name, { bigint: true }));
+  },
+  __syscall_access(path, mode) { fs.accessSync(this.pathAt(path), mode); },
+  __syscall_faccessat(folder, path, mode, _flags) { fs.accessSync(this.pathAt(path, folder), mode); },
+  __syscall_chdir(path) { process.chdir(this.pathAt(path).toString()); },
+  __syscall_chmod(path, mode) { fs.chmodSync(this.pathAt(path), mode); },
+  __syscall_fchmod(descriptor, mode) { fs.fchmodSync(descriptor, mode); },
+  __syscall_fchmodat(folder, path, mode) { fs.chmodSync(this.pathAt(path, folder), mode); },
+  __syscall_mkdir(path, mode) { fs.mkdirSync(this.pathAt(path), mode); },
+  __syscall_mkdirat(folder, path, mode) { fs.mkdirSync(this.pathAt(path, folder), mode); },
+  __syscall_rmdir(path) { fs.rmdirSync(this.pathAt(path)); },
+  __syscall_unlink(path) { fs.unlinkSync(this.pathAt(path)); },
+  __syscall_unlinkat(folder, path, flags) { (flags & AT_REMOVEDIR ? fs.rmdirSync : fs.unlinkSync)(this.pathAt(path, folder)); },
+  __syscall_rename(from, to) { fs.renameSync(this.pathAt(from), this.pathAt(to)); },
+  __syscall_renameat(from_folder, from, to_folder, to) { fs.renameSync(this.pathAt(from, from_folder), this.pathAt(to, to_folder)); },
+  __syscall_symlink(target, path) { fs.symlinkSync(this.pathAt(target), this.pathAt(path)); },
+  __syscall_readlink(path, at, size) { return this.__syscall_readlinkat(AT_FDCWD, path, at, size); },
+  __syscall_readlinkat(folder, path, at, size) {
+    const target = fs.readlinkSync(this.pathAt(path, folder), { encoding: 'buffer' }).subarray(0, size);
+    this.bytesAt(at, size).set(target);
+    return target.length;
+  },
+  __syscall_ftruncate64(descriptor, length) { fs.ftruncateSync(descriptor, Number(length)); },
+  __syscall_getcwd(at, size) {
+    const folder = Buffer.from(windows ? `/${process.cwd().replaceAll('\\', '/')}\0` : `${process.cwd()}\0`);
+    if (folder.length > size) throw new CallError('ERANGE');
+    this.bytesAt(at, size).set(folder);
+    return folder.length;
+  },
+  __syscall_getdents64(descriptor, at, size) {
+    const folder = this.folder(descriptor);
+    if (!folder) throw new CallError('ENOTDIR');
+    folder.entries ??= ['.', '..'].map(name => ({ name: Buffer.from(name), isDirectory: () => true }))
+      .concat(readdirSync(folder.path, { withFileTypes: true, encoding: 'buffer' }));
+    const RECORD = 280, view = this.view();
+    let place = at >>> 0;
+    const end = place + size;
+    for (; folder.next < folder.entries.length && place + RECORD <= end; place += RECORD) {
+      const entry = folder.entries[folder.next++];
+      this.bytesAt(place, RECORD).fill(0);
+      view.setBigUint64(place, BigInt(folder.next), true);
+      view.setBigInt64(place + 8, BigInt(folder.next), true);
+      view.setUint16(place + 16, RECORD, true);
+      view.setUint8(place + 18, KINDS.find(([is]) => entry[is]?.())?.[1] ?? 0);
+      this.bytesAt(place + 19, 255).set(entry.name.subarray(0, 255));
+    }
+    return place - (at >>> 0);
+  },
+  __syscall_fcntl64(_descriptor, command, _rest) {
+    if (command < 1 || command > 4) throw new CallError(EINVAL);  // F_GETFD, F_SETFD, F_GETFL and F_SETFL have nothing to say
+  },
+  __syscall_ioctl(descriptor, request, rest) {
+    if (request !== TIOCGWINSZ || !isatty(descriptor)) throw new CallError('ENOTTY');
+    const view = this.view(), at = this.argument(rest) >>> 0;
+    for (const [offset, value] of [[0, 0], [2, this.columns()], [4, 0], [6, 0]]) view.setUint16(at + offset, value, true);
+  },
+  fd_close(descriptor) { if (!this.forget(descriptor)) fs.closeSync(descriptor); },
+  fd_read(descriptor, list, count, done) {
+    const all = this.forBuffers(list, count, buffer => {
+      if (descriptor === 0 && this.input) {
+        const part = this.input.subarray(this.inputAt ?? 0, (this.inputAt ?? 0) + buffer.length);
+        buffer.set(part);
+        this.inputAt = (this.inputAt ?? 0) + part.length;
+        return part.length;
+      }
+      const read = this.waiting(() => fs.readSync(descriptor, buffer, 0, buffer.length, this.placeOf(descriptor)));
+      this.move(descriptor, read);
+      return read;
+    });
+    this.view().setUint32(done >>> 0, all, true);
+  },
+  fd_write(descriptor, list, count, done) {
+    const all = this.forBuffers(list, count, buffer => {
+      const written = this.waiting(() => fs.writeSync(descriptor, buffer, 0, buffer.length, this.placeOf(descriptor)));
+      this.move(descriptor, written);
+      return written;
+    });
+    this.view().setUint32(done >>> 0, all, true);
+  },
+  fd_seek(descriptor, offset, whence, at) {
+    const folder = this.folder(descriptor), file = this.fileAt(descriptor);
+    if (folder) {
+      if (offset === 0n && whence === 0) folder.next = 0, folder.entries = null;
+    } else if (file && file.at !== null) {
+      const from = whence === 0 ? 0 : whence === 1 ? file.at : fs.fstatSync(descriptor).size;
+      if (from + Number(offset) < 0) throw new CallError(EINVAL);
+      file.at = from + Number(offset);
+    } else {
+      throw new CallError('ESPIPE');
+    }
+    this.view().setBigInt64(at >>> 0, BigInt(file?.at ?? 0), true);
+  },
+  // A folder cannot be synchronized everywhere.
+  fd_sync(descriptor) {
+    const folder = this.folder(descriptor);
+    if (!folder) return fs.fsyncSync(descriptor);
+    if (windows) return;
+    const number = fs.openSync(folder.path, 'r');
+    try {
+      fs.fsyncSync(number);
+    } finally {
+      fs.closeSync(number);
+    }
+  },
+  // 2: a character device, 3: a folder, 4: a file
+  fd_fdstat_get(descriptor, at) {
+    const kind = this.folder(descriptor) ? 3 : isatty(descriptor) ? 2 : 4;
+    this.bytesAt(at, 24).fill(0);
+    this.view().setUint8(at >>> 0, kind);
+  },
+};
