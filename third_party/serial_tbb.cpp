@@ -10,9 +10,6 @@
 
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
-#include <tbb/version.h>
-
-extern "C" const char* TBB_runtime_version() { return TBB_VERSION_STRING; }
 
 namespace tbb::detail::r1 {
 

@@ -251,6 +251,7 @@ export class Host {
 
 // Functions whose errors become errnos. `this` is the host.
 const calls = {
+  __syscall_pipe() { throw new CallError('ENOSYS'); },
   cloudbake_keep_input() { this.input = fs.readFileSync(0); },
   // Seconds and microseconds of the processor, for the program and for the system, then the most memory in kB
   __syscall_getrusage(who, at) {

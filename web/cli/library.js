@@ -7,7 +7,7 @@ const calls = {
   __syscall_readlinkat: 4, __syscall_rename: 2, __syscall_renameat: 4, __syscall_rmdir: 1, __syscall_stat64: 2, __syscall_symlink: 2,
   __syscall_unlink: 1, __syscall_unlinkat: 3, __syscall_access: 2,
   fd_close: 1, fd_fdstat_get: 2, fd_read: 4, fd_seek: 4, fd_sync: 1, fd_write: 4,
-  __syscall_getrusage: 2,
+  __syscall_getrusage: 2, __syscall_pipe: 1,
   cloudbake_limit_memory: 1, cloudbake_memory_limit: 0, cloudbake_machine_memory: 0, cloudbake_processors: 0, cloudbake_temporary: 2,
   cloudbake_note_signals: 0, cloudbake_noted_signal: 0, cloudbake_start: 1, cloudbake_stop: 1, cloudbake_send: 3, cloudbake_receive: 1,
   cloudbake_message_kind: 0, cloudbake_message_size: 0, cloudbake_take_message: 1, cloudbake_keep_input: 0, cloudbake_is_running: 1,
