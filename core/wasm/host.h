@@ -13,6 +13,9 @@ double cloudbake_machine_memory();
 /// How many processors this process may use.
 int cloudbake_processors();
 
+/// Seconds of the processor, and the most kilobytes of memory, that the process has used.
+void cloudbake_usage(double* seconds, double* kilobytes);
+
 /// Whether this temporary file exists now; the host removes those that exist when a signal ends the process.
 void cloudbake_temporary(const char* path, int exists);
 /// From now on the first signal that asks the process to end is only noted. Then its number is returned, 0 before.

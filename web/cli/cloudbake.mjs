@@ -5,6 +5,7 @@ import { readFileSync, unlinkSync } from 'node:fs';
 import { constants } from 'node:os';
 import { isatty } from 'node:tty';
 import { fileURLToPath } from 'node:url';
+import { setFlagsFromString } from 'node:v8';
 import { Worker } from 'node:worker_threads';
 
 const INTERNAL = 4, STACK_MEGABYTES = 16;
@@ -12,6 +13,9 @@ const program = fileURLToPath(new URL('cloudbake.wasm', import.meta.url));
 const columns = isatty(2) ? process.stderr.columns : 0;
 const signals = new Int32Array(new SharedArrayBuffer(8));  // the one that was noted, and whether any is
 const temporary = new Map();                               // files, by their names
+// Most functions of the program are not needed in a run.
+setFlagsFromString('--wasm-lazy-compilation');
+setFlagsFromString('--wasm-lazy-validation');
 const bell = new Int32Array(new SharedArrayBuffer(4));
 const compiled = WebAssembly.compile(readFileSync(program));
 

@@ -253,12 +253,10 @@ export class Host {
 const calls = {
   __syscall_pipe() { throw new CallError('ENOSYS'); },
   cloudbake_keep_input() { this.input = fs.readFileSync(0); },
-  // Seconds and microseconds of the processor, for the program and for the system, then the most memory in kB
-  __syscall_getrusage(who, at) {
-    const { userCPUTime, systemCPUTime, maxRSS } = process.resourceUsage(), numbers = new Array(34).fill(0);
-    if (who === 0)
-      numbers.splice(0, 5, Math.floor(userCPUTime / 1e6), userCPUTime % 1e6, Math.floor(systemCPUTime / 1e6), systemCPUTime % 1e6, maxRSS);
-    numbers.forEach((number, i) => this.view().setInt32((at >>> 0) + 4 * i, number, true));
+  cloudbake_usage(seconds, kilobytes) {
+    const { userCPUTime, systemCPUTime, maxRSS } = process.resourceUsage();
+    this.view().setFloat64(seconds >>> 0, (userCPUTime + systemCPUTime) / 1e6, true);
+    this.view().setFloat64(kilobytes >>> 0, maxRSS, true);
   },
   __syscall_open(path, flags, rest) { return this.open(this.pathAt(path), flags, this.argument(rest)); },
   __syscall_openat(folder, path, flags, rest) { return this.open(this.pathAt(path, folder), flags, this.argument(rest)); },

@@ -1,0 +1,43 @@
+// Functions of the C library that Emscripten's has in another way: the words of errors are those of glibc, and the use of the processor and
+// of memory is that of the whole process. The linker turns calls of strerror into __wrap_strerror (cmake/wasm.cmake).
+#include <sys/resource.h>
+
+#include <cerrno>
+
+#include "core/wasm/host.h"
+
+extern "C" {
+
+char* __real_strerror(int error);  // NOLINT(bugprone-reserved-identifier): the linker's names
+
+char* __wrap_strerror(int error) {  // NOLINT(bugprone-reserved-identifier)
+  const auto other = [&]() -> const char* {
+    switch (error) {
+      case EBUSY: return "Device or resource busy";
+      case EDQUOT: return "Disk quota exceeded";
+      case EILSEQ: return "Invalid or incomplete multibyte or wide character";
+      case EIO: return "Input/output error";
+      case ELOOP: return "Too many levels of symbolic links";
+      case EMFILE: return "Too many open files";
+      case ENAMETOOLONG: return "File name too long";
+      case ENOMEM: return "Cannot allocate memory";
+      case EOPNOTSUPP: return "Operation not supported";
+      case EOVERFLOW: return "Value too large for defined data type";
+      case EXDEV: return "Invalid cross-device link";
+      default: return nullptr;
+    }
+  }();
+  return other ? const_cast<char*>(other) : __real_strerror(error);
+}
+
+int getrusage(int who, rusage* usage) {
+  *usage = {};
+  if (who != RUSAGE_SELF) return 0;
+  double seconds = 0, kilobytes = 0;
+  cloudbake_usage(&seconds, &kilobytes);
+  usage->ru_utime = {time_t(seconds), suseconds_t((seconds - double(time_t(seconds))) * 1e6)};
+  usage->ru_maxrss = long(kilobytes);
+  return 0;
+}
+
+}  // extern "C"
