@@ -1,9 +1,7 @@
 // cloudbake batch MANIFEST.toml|FOLDER -o DIR: bakes what is not fresh in a manifest or a folder, in parallel.
 #include <fmt/format.h>
 
-#ifndef __EMSCRIPTEN__
 #include <sys/prctl.h>
-#endif
 
 #include <csignal>
 
@@ -15,17 +13,11 @@
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
 #include "pipeline/batch/batch.h"
-#ifdef __EMSCRIPTEN__
-#include "pipeline/batch/wasm/help_batch.h"
-#endif
 
 namespace cloudbake {
 
 namespace {
 
-#ifdef __EMSCRIPTEN__
-std::atomic<int> stop_signal{0};
-#else
 // The number of the signal that came. The first one lets the running assets end; the second ends all at once, which harms no output either.
 std::atomic<int> stop_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -41,7 +33,6 @@ void takeSignals() {
     std::signal(one, SIG_IGN);
   }
 }
-#endif
 
 ExitCode writeExample(const std::filesystem::path& file) {
   if (std::filesystem::exists(file)) throw UsageError("--init: " + file.string() + " already exists: remove it, or choose another name");
@@ -81,12 +72,7 @@ ExitCode runBatch(const CommandLine& line) {
     if (!of_asset || std::string_view(given.option->name) == "strict") of_run.push_back(given);
   }
   Settings asked = settingsOf(line, of_run);
-#ifdef __EMSCRIPTEN__
-  asked.batch.helper_words = {kBatchWorker};
-  asked.batch.helper_words.insert(asked.batch.helper_words.end(), line.words.begin() + 1, line.words.end());
-#else
   if (line.is_worker) asked.batch.orders = takeOrders();
-#endif
   const Settings settings = asked;
   const BatchSettings& batch = settings.batch;
   Progress progress(settings.run.quiet);
@@ -101,16 +87,10 @@ ExitCode runBatch(const CommandLine& line) {
     say(stdout, listWork(settings, of_assets));
     return ExitCode::kDone;
   }
-#ifdef __EMSCRIPTEN__
-  if (line.is_worker) helpBatch(settings, of_assets);
-  prepareForHelpers(batch.input_list == "-");
-  Progress& journal = progress;
-#else
   if (!line.is_worker) return superviseBatch(line.words, batch.input_list == "-");
   takeSignals();
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for a worker whose supervisor was killed
   JournalListener journal(progress);
-#endif
   const BatchReport report = bakeBatch(settings, of_assets, stop_signal, journal);
   progress.clear();
   const ExitCode code = summarize(report, settings.run.quiet);

@@ -312,9 +312,7 @@ int runMain(int argc, char** argv) {
   app.set_version_flag("--version", versionText());
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
-#ifndef __EMSCRIPTEN__
   line.child_program = kThisProgram;
-#endif
   const bool show_all = std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--help-all"; });
   std::string docs;
   for (const CommandSpec& command : kCommands) {

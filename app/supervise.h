@@ -20,11 +20,6 @@ inline constexpr const char* kBatchWorker = "batch-worker";
 /// and an internal Error for a crash that no asset caused.
 ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input);
 
-#ifdef __EMSCRIPTEN__
-/// Before a batch in helpers: signals are noted, and with `reads_input` every helper gets the whole standard input.
-void prepareForHelpers(bool reads_input);
-#endif
-
 /// The orders that this worker was started with. Throws UsageError if there are none.
 BatchOrders takeOrders();
 

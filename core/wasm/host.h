@@ -39,6 +39,10 @@ void cloudbake_take_message(void* bytes);
 /// Keeps all of standard input, so that this process and those that it starts can read it from its start. Returns 0 or an errno.
 int cloudbake_keep_input();
 
+/// Locks an open file until it is closed or this process has ended, alone or with others, against processes of this machine that do the same.
+/// Returns 0 or an errno.
+int cloudbake_lock(int file, int alone);
+
 /// Whether a process of this number runs on this machine.
 int cloudbake_is_running(int process);
 int cloudbake_process_number();

@@ -209,7 +209,6 @@ struct BatchSettings {
   bool fail_fast = false, prune = false, init = false, merge = false, dry_run = false;
   bool live = false;  ///< with `html`: a page like that of `view` beside every asset
   BatchOrders orders;
-  std::vector<std::string> helper_words;  ///< WebAssembly: the command line of a copy of the program that makes single assets
   int shard = 0, shards = 0;  ///< 1-based; 0: all
 };
 

@@ -2,6 +2,7 @@
 import { constants, readdirSync, statSync } from 'node:fs';
 import * as fs from 'node:fs';
 import { availableParallelism, cpus, hostname, totalmem } from 'node:os';
+import { basename, dirname, join } from 'node:path';
 import { isatty } from 'node:tty';
 import { MessageChannel, receiveMessageOnPort } from 'node:worker_threads';
 
@@ -55,7 +56,7 @@ export class Host {
         } catch (error) {
           const number = this.errno()[error.code];
           if (number === undefined) throw error;
-          return name.startsWith('fd_') ? number : -number;
+          return /^(fd|cloudbake)_/.test(name) ? number : -number;
         }
       };
   }
@@ -209,7 +210,7 @@ export class Host {
     }
     const number = fs.openSync(path, given, mode);
     const stat = fs.fstatSync(number);
-    this.#files.set(number, { at: stat.isFile() && !(flags & O_APPEND) ? 0 : null });
+    this.#files.set(number, { at: stat.isFile() && !(flags & O_APPEND) ? 0 : null, path: Buffer.from(path) });
     return number;
   }
   forBuffers(list, count, transfer) {
@@ -245,6 +246,10 @@ export class Host {
 
   columns() { return this.#columns; }
   folder(descriptor) { return this.#folders.get(descriptor); }
+  unlock(descriptor) {
+    const lock = this.#files.get(descriptor)?.lock;
+    if (lock) fs.rmSync(lock, { force: true });
+  }
   forget(descriptor) { return this.#folders.delete(descriptor) || (this.#files.delete(descriptor), false); }
   fileAt(descriptor) { return this.#files.get(descriptor); }
 }
@@ -253,6 +258,23 @@ export class Host {
 const calls = {
   __syscall_pipe() { throw new CallError('ENOSYS'); },
   cloudbake_keep_input() { this.input = fs.readFileSync(0); },
+  // A lock is a file beside the one that is locked, which has the machine and the number of the process in its name.
+  cloudbake_lock(descriptor, alone) {
+    const { path } = this.fileAt(descriptor), name = path.toString(), machine = hostname().replace(/[^\w-]/g, '_');
+    const lock = `${name}.${machine}.${process.pid}.${alone ? 'alone' : 'shared'}`;
+    fs.closeSync(fs.openSync(lock, 'w'));
+    this.fileAt(descriptor).lock = lock;
+    for (const other of readdirSync(dirname(name))) {
+      const [, of_machine, number, kind] = other.match(/\.([\w-]+)\.(\d+)\.(alone|shared)$/) ?? [];
+      if (!other.startsWith(`${basename(name)}.`) || !kind || (of_machine === machine && Number(number) === process.pid)) continue;
+      if (of_machine === machine && !this.cloudbake_is_running(Number(number))) {
+        fs.rmSync(join(dirname(name), other), { force: true });
+      } else if (alone || kind === 'alone') {
+        this.unlock(descriptor);
+        throw new CallError('EAGAIN');
+      }
+    }
+  },
   cloudbake_usage(seconds, kilobytes) {
     const { userCPUTime, systemCPUTime, maxRSS } = process.resourceUsage();
     this.view().setFloat64(seconds >>> 0, (userCPUTime + systemCPUTime) / 1e6, true);
@@ -272,7 +294,7 @@ const calls = {
     this.writeStat(at, flags & AT_SYMLINK_NOFOLLOW ? fs.lstatSync(name, { bigint: true }) : fs.statSync(name, { bigint: true }));
   },
   __syscall_access(path, mode) { fs.accessSync(this.pathAt(path), mode); },
-  __syscall_faccessat(folder, path, mode, _flags) { fs.accessSync(this.pathAt(path, folder), mode); },
+  __syscall_faccessat(folder, path, mode) { fs.accessSync(this.pathAt(path, folder), mode); },
   __syscall_chdir(path) { process.chdir(this.pathAt(path).toString()); },
   __syscall_chmod(path, mode) { fs.chmodSync(this.pathAt(path), mode); },
   __syscall_fchmod(descriptor, mode) { fs.fchmodSync(descriptor, mode); },
@@ -317,7 +339,7 @@ const calls = {
     }
     return place - (at >>> 0);
   },
-  __syscall_fcntl64(_descriptor, command, _rest) {
+  __syscall_fcntl64(_, command) {
     if (command < 1 || command > 4) throw new CallError(EINVAL);  // F_GETFD, F_SETFD, F_GETFL and F_SETFL have nothing to say
   },
   __syscall_ioctl(descriptor, request, rest) {
@@ -325,7 +347,10 @@ const calls = {
     const view = this.view(), at = this.argument(rest) >>> 0;
     for (const [offset, value] of [[0, 0], [2, this.columns()], [4, 0], [6, 0]]) view.setUint16(at + offset, value, true);
   },
-  fd_close(descriptor) { if (!this.forget(descriptor)) fs.closeSync(descriptor); },
+  fd_close(descriptor) {
+    this.unlock(descriptor);
+    if (!this.forget(descriptor)) fs.closeSync(descriptor);
+  },
   fd_read(descriptor, list, count, done) {
     const all = this.forBuffers(list, count, buffer => {
       if (descriptor === 0 && this.input) {

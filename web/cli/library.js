@@ -1,5 +1,6 @@
 // What Emscripten's libraries call, as functions of web/cli/host.mjs, in place of Emscripten's own file system: files and folders are those of
 // the machine. An object `host` comes with the module.
+/* global LibraryManager, mergeInto */
 const calls = {
   __syscall_chdir: 1, __syscall_chmod: 2, __syscall_faccessat: 4, __syscall_fchmod: 2, __syscall_fchmodat: 3, __syscall_fcntl64: 3,
   __syscall_fstat64: 2, __syscall_fstatat64: 4, __syscall_ftruncate64: 2, __syscall_getcwd: 2, __syscall_getdents64: 3, __syscall_ioctl: 3,
@@ -8,7 +9,7 @@ const calls = {
   __syscall_unlink: 1, __syscall_unlinkat: 3, __syscall_access: 2,
   fd_close: 1, fd_fdstat_get: 2, fd_read: 4, fd_seek: 4, fd_sync: 1, fd_write: 4,
   __syscall_pipe: 1,
-  cloudbake_limit_memory: 1, cloudbake_memory_limit: 0, cloudbake_machine_memory: 0, cloudbake_processors: 0, cloudbake_usage: 2, cloudbake_temporary: 2,
+  cloudbake_limit_memory: 1, cloudbake_memory_limit: 0, cloudbake_machine_memory: 0, cloudbake_processors: 0, cloudbake_usage: 2, cloudbake_lock: 2, cloudbake_temporary: 2,
   cloudbake_note_signals: 0, cloudbake_noted_signal: 0, cloudbake_start: 1, cloudbake_stop: 1, cloudbake_send: 3, cloudbake_receive: 1,
   cloudbake_message_kind: 0, cloudbake_message_size: 0, cloudbake_take_message: 1, cloudbake_keep_input: 0, cloudbake_is_running: 1,
   cloudbake_process_number: 0, cloudbake_machine_name: 2,
@@ -18,10 +19,9 @@ const library = {
   $Host__postset: 'Host = Module["host"]; Host.errno = () => ERRNO_CODES; Host.bytes = () => HEAPU8; Object.assign(ENV, Host.environment());',
   $Host: {},
   emscripten_resize_heap__deps: ['$Host', '$emscripten_realloc_buffer'],
-  emscripten_resize_heap: function(size) {
-    var grown = Host.grownMemory(size >>> 0, HEAPU8.length);
-    return grown > 0 && emscripten_realloc_buffer(grown);
-  },
+  emscripten_resize_heap: new Function('size', `
+    const grown = Host.grownMemory(size >>> 0, HEAPU8.length);
+    return grown > 0 && emscripten_realloc_buffer(grown);`),
 };
 for (const [name, count] of Object.entries(calls)) {
   const parameters = ['a', 'b', 'c', 'd'].slice(0, count).join(', ');

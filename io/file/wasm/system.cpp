@@ -1,5 +1,6 @@
-// Functions of the C library that Emscripten's has in another way: the words of errors are those of glibc, and the use of the processor and
-// of memory is that of the whole process. The linker turns calls of strerror into __wrap_strerror (cmake/wasm.cmake).
+// Functions of the C library that Emscripten's has in another way: the words of errors are those of glibc, the use of the processor and of
+// memory is that of the whole process, and locks of files, which Node lacks, are files with the number of their process. The linker turns calls of strerror into __wrap_strerror (cmake/wasm.cmake).
+#include <sys/file.h>
 #include <sys/resource.h>
 
 #include <cerrno>
@@ -28,6 +29,12 @@ char* __wrap_strerror(int error) {  // NOLINT(bugprone-reserved-identifier)
     }
   }();
   return other ? const_cast<char*>(other) : __real_strerror(error);
+}
+
+int flock(int file, int operation) {
+  const int error = cloudbake_lock(file, (operation & LOCK_EX) != 0);
+  if (error != 0) errno = error;
+  return error == 0 ? 0 : -1;
 }
 
 int getrusage(int who, rusage* usage) {
