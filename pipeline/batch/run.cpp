@@ -104,7 +104,7 @@ void fail(AssetRecord& record, ExitCode code, const std::string& what) {
 
 // A signal from outside is no fault of the asset.
 void failByCrash(const std::string& source, int signal, AssetRecord& record) {
-  const std::string name = std::string(" (") + ::strsignal(signal) + ")";
+  const std::string name = " (" + signalText(signal) + ")";
   if (isFault(signal))
     fail(record, ExitCode::kInternal,
          source + ": it crashed the program" + name + "; please report it, and export it again or leave it out");
