@@ -293,7 +293,7 @@ class Baker {
     await this.queue;
   }
 
-  /** @param {Job} job @param {object} options @param {number} run */
+  /** @param {Job} job @param {Record<string, string>} options @param {number} run */
   async bakeOne(job, options, run) {
     this.change(job, { state: job.grown ? 'growing' : 'reading' });
     try {
