@@ -27,8 +27,6 @@ namespace {
   throw IoError(file, what + ": " + std::strerror(errnoOf(error)) + "; " + cure + "close other programs and try again");
 }
 
-HANDLE handleOf(int descriptor) { return reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor)); }
-
 struct Handle {
   HANDLE value = nullptr;
   Handle() = default;

@@ -18,8 +18,6 @@ namespace {
 
 constexpr DWORD kShareAll = FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE;
 
-HANDLE handleOf(int descriptor) { return reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor)); }
-
 int failNow() {
   errno = errnoOf(::GetLastError());
   return -1;
@@ -82,6 +80,8 @@ std::wstring longPath(const std::filesystem::path& path) {
   if (full.native().starts_with(L"\\\\")) return L"\\\\?\\UNC" + full.native().substr(1);
   return L"\\\\?\\" + full.native();
 }
+
+void* handleOf(int descriptor) { return reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor)); }
 
 int errnoOf(unsigned long error) {
   switch (error) {
