@@ -43,6 +43,8 @@ void checkLimit(std::size_t bytes) {
 
 namespace cloudbake {
 
+void keepLargeBlocks() {}  // Windows keeps them by itself
+
 void limitMemory(uint64_t bytes) { limit = memoryTaken() + bytes; }
 
 }  // namespace cloudbake
