@@ -1,12 +1,12 @@
 // cloudbake preview ASSET.glb -o out.png: draws what an engine shows with the four floats and the lobe formula, for an asset or a scene,
 // still or in motion, or compared with the truth.
-#include "app/allocation.h"
 #include "app/commands.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "app/allocation.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
 #include "io/image/image.h"
