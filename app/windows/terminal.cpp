@@ -28,7 +28,7 @@ void prepareTerminal(int& argc, char**& argv) {
 
   ::SetConsoleOutputCP(CP_UTF8);
   for (std::FILE* stream : {stdin, stdout, stderr}) ::_setmode(::_fileno(stream), _O_BINARY);
-  ::_set_fmode(_O_BINARY);
+  _fmode = _O_BINARY;
 }
 
 bool isTerminal() {
