@@ -1,8 +1,7 @@
 // cloudbake batch MANIFEST.toml|FOLDER -o DIR: bakes what is not fresh in a manifest or a folder, in parallel.
 #include <fmt/format.h>
 
-#include <sys/prctl.h>
-
+#include <atomic>
 #include <csignal>
 
 #include "app/commands.h"
@@ -10,6 +9,7 @@
 #include "app/signals.h"
 #include "app/supervise.h"
 #include "app/tell.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
 #include "pipeline/batch/batch.h"
@@ -30,7 +30,7 @@ void takeSignals() {
         if (signal == passed_on && !stop_signal.compare_exchange_strong(none, original)) endBySignal(signal);
       }
     });
-    std::signal(one, SIG_IGN);
+    if (one != sent) std::signal(one, SIG_IGN);
   }
 }
 
@@ -89,7 +89,7 @@ ExitCode runBatch(const CommandLine& line) {
   }
   if (!line.is_worker) return superviseBatch(line.words, batch.input_list == "-");
   takeSignals();
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for a worker whose supervisor was killed
+  endWithParent();  // nobody waits for a worker whose supervisor was killed
   JournalListener journal(progress);
   const BatchReport report = bakeBatch(settings, of_assets, stop_signal, journal);
   progress.clear();

@@ -12,6 +12,7 @@
 #include "app/print_docs.h"
 #include "app/signals.h"
 #include "app/supervise.h"
+#include "app/terminal.h"
 #include "core/parallel.h"
 #include "core/text/markup.h"
 #include "io/file/process.h"
@@ -312,7 +313,7 @@ int runMain(int argc, char** argv) {
   app.set_version_flag("--version", versionText());
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
-  line.child_program = kThisProgram;
+  line.child_program = thisProgram();
   const bool show_all = std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--help-all"; });
   std::string docs;
   for (const CommandSpec& command : kCommands) {
@@ -357,4 +358,7 @@ int runMain(int argc, char** argv) {
 
 }  // namespace cloudbake
 
-int main(int argc, char** argv) { return cloudbake::runMain(argc, argv); }
+int main(int argc, char** argv) {
+  cloudbake::prepareTerminal(argc, argv);
+  return cloudbake::runMain(argc, argv);
+}

@@ -3,10 +3,10 @@
 #include "app/commands.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <nlohmann/json.hpp>
 
+#include "app/allocation.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
 #include "io/image/image.h"
@@ -58,12 +58,6 @@ ExitCode runFolder(const CommandLine& line, const Settings& settings, BakeReport
   if (failed == 0) return ExitCode::kDone;
   say(stderr, fmt::format("cloudbake: {} of {} files cannot be shown\n", failed, drawn.panels.size()));
   return ExitCode::kBound;
-}
-
-// Pictures are tens of megabytes that come and go: kept by malloc, their pages need not be cleared by the kernel every time.
-void keepLargeBlocks() {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 512 << 20);
 }
 
 }  // namespace

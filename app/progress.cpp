@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +10,7 @@
 #include <string_view>
 
 #include "app/tell.h"
+#include "app/terminal.h"
 #include "core/memory_budget.h"
 #include "core/parallel.h"
 #include "core/text/markup.h"
@@ -24,20 +22,10 @@ namespace {
 constexpr int kBarWidth = 24;
 constexpr size_t kNarrowest = 50;  // columns for bars; a terminal that has fewer shows a count
 
-bool isTerminal() {
-  const char* kind = std::getenv("TERM");
-  return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
-}
-
 // NO_COLOR disables colours if it is set to any text (no-color.org).
 bool mayColour() {
   const char* forbidden = std::getenv("NO_COLOR");
   return forbidden == nullptr || *forbidden == '\0';
-}
-
-size_t terminalWidth() {
-  winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 // As much of a line as fits: a character has at least as many bytes as columns, and is not cut.

@@ -1,6 +1,4 @@
 // cloudbake view --serve, cloudbake view --watch FILE: the page of view on this machine, and a new bake whenever a file is saved.
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -22,7 +20,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr std::chrono::milliseconds kWatchInterval{25};
+constexpr std::chrono::milliseconds kWatchInterval{25}, kForLong = std::chrono::hours(1);
 
 // A file with those that it refers to, as far as it can be read.
 std::vector<std::filesystem::path> withReferencedFiles(const std::filesystem::path& file, const ReadSettings& settings) {
@@ -99,8 +97,7 @@ ExitCode serveView(const CommandLine& line, const Settings& settings) {
   showScenes(line, settings, *server);
   if (!settings.run.quiet) sayAddress(*server);
   for (;;) {
-    if (!watch) ::pause();
-    std::this_thread::sleep_for(kWatchInterval);
+    std::this_thread::sleep_for(watch ? kWatchInterval : kForLong);
     if (watch && watch->changed()) showScenesAgain(line, settings, *server);
   }
 }

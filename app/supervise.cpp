@@ -4,13 +4,10 @@
 // ?NUMBER). Each of these records ends in a NUL, because a name may have any other byte.
 #include "app/supervise.h"
 
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
-#include <cerrno>
-#include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <set>
 
@@ -24,19 +21,17 @@ namespace cloudbake {
 namespace {
 
 constexpr int kJournalDescriptor = 3, kOrdersDescriptor = 4;
-constexpr std::array<WorkerSignal, 3> kSignals{{{SIGINT, SIGUSR1}, {SIGTERM, SIGUSR2}, {SIGHUP, SIGALRM}}};
 
 std::atomic<pid_t> worker{0};
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 
 // Passes signals on to the worker. Without one there is nothing to end in order.
 void passSignalsOn() {
-  for (const auto& [one, passed_on] : kSignals)
-    handleSignal(one, [](int signal) {
+  for (const WorkerSignal& one : workerSignals())
+    handleSignal(one.original, [](int signal) {
       const pid_t process = worker;
       if (process == 0) endBySignal(signal);
-      for (const auto& [original, to_worker] : kSignals)
-        if (process != 0 && signal == original) ::kill(process, to_worker);
+      if (process != 0) passSignalOn(process, signal);
     });
 }
 
@@ -70,22 +65,22 @@ std::string ordersText(const BatchOrders& orders) {
   return text;
 }
 
-// Runs a worker to its end. Returns its wait status.
-int runWorker(const std::vector<std::string>& words, const BatchOrders& orders, Journal& journal) {
+// Runs a worker to its end.
+ProcessEnd runWorker(const std::vector<std::string>& words, const BatchOrders& orders, Journal& journal) {
   std::vector<std::string> all{words.front(), kBatchWorker};
   all.insert(all.end(), words.begin() + 1, words.end());
   Descriptor file, to_read, to_write;
   openInMemory(file, ordersText(orders));
   openPipe(to_read, to_write);
   const Inherited inherited[] = {{kJournalDescriptor, to_write.number}, {kOrdersDescriptor, file.number}};
-  worker = startProcess(kThisProgram, all, inherited);
+  worker = startProcess(thisProgram(), all, inherited);
   to_write.close();
   std::string bytes;
   readToEnd(to_read.number, bytes);
-  const int status = waitForProcess(worker);
+  const ProcessEnd end = waitForProcess(worker);
   worker = 0;
   journal = readJournal(bytes);
-  return status;
+  return end;
 }
 
 // Standard input in memory, so that every worker can read it from the start.
@@ -101,7 +96,7 @@ void keepInput() {
 // What the end of a worker by a signal teaches the next one. Returns a line for the user.
 std::string learn(const Journal& journal, int signal, BatchOrders& orders) {
   const bool is_fault = isFault(signal);
-  const std::string name = std::string("(") + ::strsignal(signal) + ")", count = std::to_string(journal.running.size());
+  const std::string name = "(" + signalText(signal) + ")", count = std::to_string(journal.running.size());
   const auto fail = [&](const std::string& what) {
     throw Error(is_fault ? ExitCode::kInternal : ExitCode::kSystem, "", 0, 0, what + "; run the batch again");
   };
@@ -123,8 +118,6 @@ std::string learn(const Journal& journal, int signal, BatchOrders& orders) {
 
 }  // namespace
 
-std::span<const WorkerSignal> workerSignals() { return kSignals; }
-
 ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input) {
   if (reads_input) keepInput();
   passSignalsOn();
@@ -132,12 +125,11 @@ ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input)
   for (;;) {
     if (reads_input) ::lseek(STDIN_FILENO, 0, SEEK_SET);
     Journal journal;
-    const int status = runWorker(words, orders, journal);
-    if (WIFEXITED(status)) return ExitCode(WEXITSTATUS(status));
-    const int signal = WTERMSIG(status);
-    for (const auto& [original, passed_on] : kSignals)
+    const auto [code, signal] = runWorker(words, orders, journal);
+    if (signal == 0) return ExitCode(code);
+    for (const auto& [original, passed_on] : workerSignals())
       if (signal == passed_on || signal == original) return ExitCode(128 + original);
-    if (signal == SIGPIPE) return ExitCode::kBrokenPipe;
+    if (isBrokenPipe(signal)) return ExitCode::kBrokenPipe;
     say(stderr, "cloudbake: " + learn(journal, signal, orders) + "\n");
   }
 }

@@ -1,7 +1,6 @@
 // A batch runs in a child process, so that an asset that crashes the process does not end the batch.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -37,12 +36,5 @@ class JournalListener : public BatchListener {
  private:
   BatchListener& next_;
 };
-
-/// The signals that ask a worker to stop, beside those that they stand for. It ignores the latter, because a terminal sends them to all of
-/// its processes and the supervisor passes them on.
-struct WorkerSignal {
-  int original, passed_on;
-};
-std::span<const WorkerSignal> workerSignals();
 
 }  // namespace cloudbake

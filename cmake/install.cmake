@@ -81,7 +81,7 @@ add_custom_command(OUTPUT ${kit_dir}/written ${write_kit} COMMAND ${CMAKE_COMMAN
 add_custom_target(cloudbake_kit ALL DEPENDS ${kit_dir}/written)
 install(DIRECTORY ${kit_dir} DESTINATION share/cloudbake PATTERN written EXCLUDE)
 
-# The add-on for Blender as an archive that Blender installs. scripts/package needs only Python.
+# The add-on for Blender as an archive that Blender installs. scripts/package_addon needs only Python.
 if(NOT CLOUDBAKE_SYSTEM_PYTHON)
   message(FATAL_ERROR "python3 is not on the PATH: install it, because it packs the add-on for Blender")
 endif()
@@ -90,8 +90,8 @@ list(FILTER addon_sources EXCLUDE REGEX "/__pycache__$|/bin$")
 set(addon_archive ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 add_custom_command(
   OUTPUT ${addon_archive}
-  COMMAND ${CLOUDBAKE_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/package -o ${addon_archive}
-  DEPENDS ${addon_sources} ${PROJECT_SOURCE_DIR}/scripts/package
+  COMMAND ${CLOUDBAKE_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/package_addon -o ${addon_archive}
+  DEPENDS ${addon_sources} ${PROJECT_SOURCE_DIR}/scripts/package_addon
   COMMENT "Packing the add-on for Blender"
   VERBATIM)
 add_custom_target(blender_addon ALL DEPENDS ${addon_archive})

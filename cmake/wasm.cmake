@@ -8,7 +8,8 @@ add_link_options(-fwasm-exceptions)
 add_compile_definitions(CLOUDBAKE_SERIAL FMT_USE_LONG_DOUBLE=0 FMT_USE_INT128=0)
 
 # Sources that are for systems with processes and sockets. What stands in for them is in X/wasm/.
-set(CLOUDBAKE_NOT_IN_WASM "/(posix|windows|threads)/|/pipeline/batch/schedule|/io/http/page_server|/io/file/(own_library|temporary_file)\\.cpp|/app/(supervise|serve|allocation)\\.cpp$")
+set(CLOUDBAKE_NOT_IN_WASM
+  "/(windows|threads)/|/core/posix/|/app/posix/(allocation|signals)|/io/file/posix/(own_library|process)|/io/file/temporary_file\\.cpp|/io/http/|/app/serve\\.cpp|/pipeline/batch/schedule")
 
 function(cloudbake_wasm_flags)
   target_include_directories(cloudbake_flags SYSTEM BEFORE INTERFACE ${PROJECT_SOURCE_DIR}/web/libcxx)

@@ -22,9 +22,12 @@ inline constexpr double kGiB = 1 << 30;
 /// leaves. `root` is where /proc and /sys are.
 uint64_t defaultMemoryLimit(const std::filesystem::path& root = "/");
 
+/// A limit that there is not.
+inline constexpr uint64_t kNoMemoryLimit = std::numeric_limits<uint64_t>::max();
+
 /// Bytes of data that this process has taken; 0 if the system does not say.
 uint64_t memoryTaken();
-/// The most that it may take by its own limits (setrlimit(2)); the largest number if there is none.
+/// The most that it may take by its own limits (setrlimit(2)); kNoMemoryLimit if there is none.
 uint64_t memoryAllowed();
 
 /// "2.5 GiB", "20 MiB", "3 kB".

@@ -4,16 +4,16 @@
 /* exported makeCloudbake */
 
 class CloudbakeError extends Error {
-  /** @param {{ code: number, message: string, file?: string, line?: number, column?: number }} what */
-  constructor({ code, file, line, column, message }) {
+  /** @param {{ code: number, message: string, file?: string, line?: number, column?: number, refused?: boolean }} what */
+  constructor({ code, file, line, column, message, refused }) {
     super([file && [file, line || null, (line && column) || null].filter(part => part !== null).join(':'),
       message].filter(Boolean).join(': '));
     this.name = 'CloudbakeError';
-    Object.assign(this, { code, file, line, column });
+    Object.assign(this, { code, file, line, column, refused });
   }
 }
 
-/** @param {CreateEngine} createEngine @param {() => Promise<WebAssembly.Module>} compiledWasm @returns {Omit<Module, 'CloudbakeError'>} */
+/** @param {CreateEngine} createEngine @param {() => Promise<WebAssembly.Module>} compiledWasm @returns {PageModule} */
 function makeCloudbake(createEngine, compiledWasm) {
   /** @type {Promise<Engine>} */
   let engine = null;
@@ -62,7 +62,7 @@ function makeCloudbake(createEngine, compiledWasm) {
       const room = pass(request, request.length + 1);
       module.HEAPU8[room + request.length] = 0;
       const answer = JSON.parse(module.UTF8ToString(module._cloudbake_call(room) >>> 0));
-      if (answer.error) throw new CloudbakeError(answer.error);
+      if (answer.error) throw new CloudbakeError({ ...answer.error, refused: answer.refused });
       for (const key of ['glb', 'ply']) if (answer[key]) answer[key] = module.HEAPU8.slice(answer[key][0], answer[key][0] + answer[key][1]);
       for (const key of ['lengths', 'lobes', 'spheres'])
         if (answer[key]) answer[key] = module.HEAPF32.slice(answer[key][0] / 4, answer[key][0] / 4 + answer[key][1]);
@@ -98,6 +98,17 @@ function makeCloudbake(createEngine, compiledWasm) {
     }
   }
 
+  /** A preset, by the whole engine only. @param {string} name @param {Options} [options] @param {{ onStage?: (stage: string) => void }} [more] */
+  async function grow(name, options = {}, { onStage: listener } = {}) {
+    const module = await startEngine();
+    onStage = listener ?? null;
+    try {
+      return call(module, 'grow', { name, options, files: {} });
+    } finally {
+      onStage = null;
+    }
+  }
+
   /** @type {Module['transmittance']} */
   async function transmittance(data, name, options = {}, { files } = {}) {
     const module = await startEngine();
@@ -124,5 +135,6 @@ function makeCloudbake(createEngine, compiledWasm) {
     return call(module, 'expand', { name: is_preset ? source : name, options, files: is_preset ? {} : filesOf(data, name) });
   }
 
-  return { bake, transmittance, expand, options: async () => call(await startEngine(), 'options', {}) };
+  return { bake, grow, transmittance, expand, presets: async () => call(await startEngine(), 'presets', {}),
+    options: async () => call(await startEngine(), 'options', {}) };
 }

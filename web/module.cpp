@@ -19,8 +19,10 @@
 #include "pipeline/library/cloud_light.h"
 #include "pipeline/library/cloudbake.h"
 #include "pipeline/options/option_json.h"
+#include "pipeline/options/presets.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/sources/grown.h"
+#include "web/refusals.h"
 
 // clang-format off
 EM_JS(void, tellStage, (const char* stage), { Module["onStage"](UTF8ToString(stage)); });
@@ -92,11 +94,49 @@ class CallFiles {
   }
 };
 
-Json bakeCall(const Json& call, Answer& answer) {
-  const CallFiles files(call);
-  BakeResult result = bake(nameInFolder(call.at("name")), optionsOf(call), [](const std::string& stage) { tellStage(stage.c_str()); });
+void onStage(const std::string& stage) { tellStage(stage.c_str()); }
+
+Json assetJson(BakeResult result, Answer& answer) {
   return {
       {"glb", answer.pass(std::move(result.glb))}, {"report", parseJson(result.report).value()}, {"summary", onOwnLines(result.summary)}};
+}
+
+Json bakeCall(const Json& call, Answer& answer) {
+  const CallFiles files(call);
+  return assetJson(bake(nameInFolder(call.at("name")), optionsOf(call), onStage), answer);
+}
+
+// A preset, or a recipe or a list of rules among the files.
+fs::path grownSource(const Json& call) {
+  return call.at("files").empty() ? fs::path(call.at("name").get<std::string>()) : nameInFolder(call.at("name"));
+}
+
+#ifdef CLOUDBAKE_WHOLE
+Json growCall(const Json& call, Answer& answer) {
+  const CallFiles files(call);
+  return assetJson(grow(grownSource(call), optionsOf(call), onStage), answer);
+}
+#endif
+
+// The presets with what their recipes set, and the table of options of `grow`.
+Json presetsCall(const Json&, Answer&) {
+  Json all = Json::array(), table = Json::array();
+  for (const Preset& preset : presets()) {
+    SourceSettings source;
+    source.input = preset.name;
+    source.kind = SourceKind::kPreset;
+    Json values = Json::object();
+    for (const Given& given : readGrownSource(source).given) values[given.option->name] = given.value;
+    std::string_view about = preset.toml;
+    about.remove_prefix(about.find_first_not_of("# "));
+    all.push_back({{"name", preset.name}, {"about", about.substr(0, about.find('\n'))}, {"values", values}});
+  }
+  for (const Option& option : optionTable()) {
+    if (!(option.commands & kGrow) || option.files.kind != FileUse::kNone) continue;
+    table.push_back(optionJson(option, kGrow));
+    table.back()["offered"] = !(option.bits & kNotOnPage);
+  }
+  return {{"presets", all}, {"options", table}};
 }
 
 // The clouds of transmittance(), by number.
@@ -143,12 +183,12 @@ Json closeLightCall(const Json& call, Answer&) {
   return Json::object();
 }
 
-// A preset, or a recipe or a list of rules among the files, up to its spheres.
+// Up to its spheres.
 Json expandCall(const Json& call, Answer& answer) {
   const CallFiles files(call);
   SourceSettings source;
   source.memory_limit = defaultMemoryLimit();
-  source.input = call.at("files").empty() ? fs::path(call.at("name").get<std::string>()) : nameInFolder(call.at("name"));
+  source.input = grownSource(call);
   source.kind = sourceKindOf(source.input);
   if (!isGrown(source.kind)) source.kind = call.at("files").empty() ? SourceKind::kPreset : SourceKind::kRules;
   GrownSource grown = readGrownSource(source);
@@ -185,7 +225,8 @@ std::string jsonText(const Json& json) { return json.dump(-1, ' ', false, Json::
 
 // As the program prints it: what a file has in it may not break a line.
 std::string errorText(const Error& error) {
-  return "{\"error\": " + errorJson(Error(error.code, onOneLine(error.file), error.line, error.column, onOneLine(error.message))) + "}";
+  return "{\"refused\": " + std::string(has_refused ? "true" : "false") +
+         ", \"error\": " + errorJson(Error(error.code, onOneLine(error.file), error.line, error.column, onOneLine(error.message))) + "}";
 }
 
 }  // namespace
@@ -197,8 +238,12 @@ extern "C" EMSCRIPTEN_KEEPALIVE const char* cloudbake_call(const char* request) 
   static Answer answer;
   answer = {};
   static const std::map<std::string, Json (*)(const Json&, Answer&)> kCalls = {
+#ifdef CLOUDBAKE_WHOLE
+      {"grow", growCall},
+#endif
       {"bake", bakeCall},     {"openLight", openLightCall}, {"lengths", lengthsCall}, {"lobes", lobesCall}, {"closeLight", closeLightCall},
-      {"expand", expandCall}, {"options", optionsCall}};
+      {"expand", expandCall}, {"presets", presetsCall},     {"options", optionsCall}};
+  has_refused = false;
   try {
     const Json call = parseJson(request).value();
     answer.json = jsonText(kCalls.at(call.at("call"))(call, answer));

@@ -1,5 +1,6 @@
 // What the module cannot do: the functions of the rooms that need OpenVDB, CGAL, Embree, Draco, meshoptimizer or another process. Each
 // refuses, with the way out.
+#include "web/refusals.h"
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
 #include "bake/field/level_set.h"
@@ -22,7 +23,10 @@ namespace cloudbake {
 namespace {
 
 // `what` has the program as its subject: "… closes an open sculpt".
-[[noreturn]] void refuse(const std::string& what) { throw InputError("", "only the program `cloudbake` " + what + ": use it for this"); }
+[[noreturn]] void refuse(const std::string& what) {
+  has_refused = true;
+  throw InputError("", "only the program `cloudbake` " + what + ": use it for this");
+}
 
 constexpr const char *kLevelSet = "has --method rays and --field levelset", *kExact = "has --target-error",
                      *kMesh = "has --vertices, --remesh and --repair", *kClosing = "closes an open sculpt, and this one is open";

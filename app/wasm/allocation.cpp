@@ -26,6 +26,8 @@
 
 namespace cloudbake {
 
+void keepLargeBlocks() {}  // nothing is given back
+
 void limitMemory(uint64_t bytes) { cloudbake_limit_memory(double(memoryTaken()) + double(bytes)); }
 
 }  // namespace cloudbake

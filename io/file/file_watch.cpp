@@ -1,6 +1,6 @@
 #include "io/file/file_watch.h"
 
-#include <sys/stat.h>
+#include "io/file/system_file.h"
 
 namespace cloudbake {
 
@@ -18,10 +18,8 @@ bool FileWatch::changed() {
 FileWatch::State FileWatch::stateOf(const std::vector<std::filesystem::path>& files) {
   State state;
   for (const std::filesystem::path& file : files) {
-    struct stat status {};
     Stamp stamp;
-    if (::stat(file.c_str(), &status) == 0)
-      stamp = {status.st_dev, status.st_ino, status.st_size, status.st_mtim.tv_sec * int64_t(1'000'000'000) + status.st_mtim.tv_nsec};
+    if (const auto status = statusOf(file)) stamp = {status->device, status->number, int64_t(status->size), status->changed};
     state.emplace_back(file, stamp);
   }
   return state;

@@ -1,10 +1,9 @@
-// Patterns are matched component by component with fnmatch(3) (POSIX.1-2017, XCU 2.13). `**` has the meaning of Bash's globstar and
-// gitignore.
+// Patterns are matched component by component as POSIX.1-2017, XCU 2.13, says. `**` has the meaning of Bash's globstar and gitignore.
 #include "io/file/find_files.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 
@@ -22,7 +21,7 @@ std::vector<fs::directory_entry> entriesOf(const fs::path& folder, bool hidden, 
   folders.insert(folder);
   std::vector<fs::directory_entry> entries;
   for (; iterator != fs::directory_iterator(); iterator.increment(error)) {
-    if (hidden || !iterator->path().filename().native().starts_with('.')) entries.push_back(*iterator);
+    if (hidden || !iterator->path().filename().string().starts_with('.')) entries.push_back(*iterator);
     if (error) break;  // what a running system removes meanwhile, as in /proc, is not there
   }
   std::sort(entries.begin(), entries.end());
@@ -41,6 +40,24 @@ bool isFolder(const fs::path& path) {
 bool isRealFolder(const fs::directory_entry& entry) {
   std::error_code error;
   return entry.is_directory(error) && !entry.is_symlink(error);
+}
+
+// How many characters of a pattern, which does not begin with a star, stand for this one; 0 if they do not.
+size_t matchOne(std::string_view pattern, char character) {
+  if (pattern.empty()) return 0;
+  const auto code = [](char one) { return static_cast<unsigned char>(one); };
+  if (pattern[0] == '?') return 1;
+  if (pattern[0] == '\\' && pattern.size() > 1) return pattern[1] == character ? 2 : 0;
+  const size_t begin = pattern.size() > 1 && (pattern[1] == '!' || pattern[1] == '^') ? 2 : 1;
+  const size_t end = pattern[0] == '[' ? pattern.find(']', begin + 1) : pattern.npos;
+  if (end == pattern.npos) return pattern[0] == character ? 1 : 0;
+  bool is_listed = false;
+  for (size_t i = begin; i < end; ++i) {
+    const bool is_range = i + 2 < end && pattern[i + 1] == '-';
+    is_listed |= code(pattern[i]) <= code(character) && code(character) <= code(pattern[is_range ? i + 2 : i]);
+    if (is_range) i += 2;
+  }
+  return is_listed == (begin == 1) ? end + 1 : 0;
 }
 
 using Component = fs::path::const_iterator;
@@ -65,9 +82,13 @@ void match(const fs::path& folder, Component component, Component end, std::vect
       match(path, next, end, found, folders);
     }
   };
-  if (!isPattern(pattern.native())) return take(folder / pattern);
-  for (const auto& entry : entriesOf(here, true, folders))
-    if (::fnmatch(pattern.c_str(), entry.path().filename().c_str(), FNM_PERIOD) == 0) take(folder / entry.path().filename());
+  if (!isPattern(pattern.string())) return take(folder / pattern);
+  const std::string text = pattern.string();
+  for (const auto& entry : entriesOf(here, true, folders)) {
+    const std::string name = entry.path().filename().string();
+    const bool may_be_hidden = text.starts_with('.') || text.starts_with("\\.");
+    if ((may_be_hidden || !name.starts_with('.')) && matchesPattern(text, name)) take(folder / entry.path().filename());
+  }
 }
 
 void listBelow(const fs::path& folder, const fs::path& excluded, std::vector<fs::path>& found, std::set<fs::path>& folders) {
@@ -81,17 +102,38 @@ void listBelow(const fs::path& folder, const fs::path& excluded, std::vector<fs:
 }
 
 std::vector<fs::path> sorted(std::vector<fs::path> paths) {
-  std::sort(paths.begin(), paths.end(), [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+  std::sort(paths.begin(), paths.end(), [](const fs::path& a, const fs::path& b) { return a.generic_string() < b.generic_string(); });
   paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
   return paths;
 }
 
 }  // namespace
 
+bool matchesPattern(std::string_view pattern, std::string_view name) {
+  // Only the last star is tried again: what an earlier one took can stay, because the later one takes the rest.
+  size_t at = 0, in_pattern = 0;
+  std::optional<std::pair<size_t, size_t>> star;  // behind it in the pattern, and where its text ends for now
+  while (at < name.size() || in_pattern < pattern.size()) {
+    if (in_pattern < pattern.size() && pattern[in_pattern] == '*') {
+      star = {++in_pattern, at};
+      continue;
+    }
+    if (const size_t taken = at < name.size() ? matchOne(pattern.substr(in_pattern), name[at]) : 0; taken > 0) {
+      in_pattern += taken;
+      ++at;
+      continue;
+    }
+    if (!star || star->second == name.size()) return false;
+    in_pattern = star->first;
+    at = ++star->second;
+  }
+  return true;
+}
+
 bool isPattern(std::string_view text) { return text.find_first_of("*?[") != text.npos; }
 
 std::vector<fs::path> filesMatching(const fs::path& pattern, std::set<fs::path>& folders) {
-  if (!isPattern(pattern.native()) || isFile(pattern)) return isFile(pattern) ? std::vector{pattern} : std::vector<fs::path>{};
+  if (!isPattern(pattern.string()) || isFile(pattern)) return isFile(pattern) ? std::vector{pattern} : std::vector<fs::path>{};
   std::vector<fs::path> found;
   const fs::path fixed = fixedFolder(pattern);
   if (fixed.empty() || isFolder(fixed)) {
@@ -104,7 +146,7 @@ std::vector<fs::path> filesMatching(const fs::path& pattern, std::set<fs::path>&
 fs::path fixedFolder(const fs::path& pattern) {
   fs::path fixed;
   for (const fs::path& component : pattern) {
-    if (isPattern(component.native())) break;
+    if (isPattern(component.string())) break;
     fixed /= component;
   }
   return fixed;

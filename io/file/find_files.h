@@ -9,10 +9,14 @@
 
 namespace cloudbake {
 
+/// Whether a name has the form of a pattern: `*` stands for any characters, `?` for one byte, `[a-z]` for one byte of these, `[!a-z]` for
+/// one of the others, and a backslash takes the meaning from the next byte.
+bool matchesPattern(std::string_view pattern, std::string_view name);
+
 /// Whether the text contains `*`, `?` or `[`.
 bool isPattern(std::string_view text);
 
-/// The files that match a pattern, sorted by their bytes. `*`, `?` and `[…]` match within a name as in fnmatch(3); `**` matches any
+/// The files that match a pattern, sorted by their bytes. `*`, `?` and `[…]` match within a name (matchesPattern); `**` matches any
 /// folders. Only a dot matches the dot at the start of a name. `**` does not follow links to folders. If a file has exactly the pattern's
 /// name, only that file is returned. Adds the searched folders to `folders`. Throws IoError for a folder that cannot be read.
 std::vector<std::filesystem::path> filesMatching(const std::filesystem::path& pattern, std::set<std::filesystem::path>& folders);

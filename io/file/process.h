@@ -3,38 +3,21 @@
 
 #include <sys/types.h>
 
-#include <cstddef>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "io/file/descriptor.h"
 
 namespace cloudbake {
 
 /// The absolute path of the running program, to start it again.
-inline constexpr const char* kThisProgram = "/proc/self/exe";
-
-/// A file descriptor that closes itself; -1 is none.
-struct Descriptor {
-  explicit Descriptor(int opened = -1) : number(opened) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-  void close();
-  int number;
-};
-
-/// Writes all bytes. Returns 0 or the errno of the call that failed.
-int writeAll(int descriptor, std::span<const std::byte> bytes);
-int writeAll(int descriptor, std::string_view text);
-
-/// Appends everything up to the end of the file or pipe. Returns 0 or the errno of the call that failed.
-int readToEnd(int descriptor, std::string& bytes);
+std::filesystem::path thisProgram();
 
 /// Opens a pipe whose ends other programs do not inherit. Throws IoError.
 void openPipe(Descriptor& to_read, Descriptor& to_write);
@@ -42,23 +25,49 @@ void openPipe(Descriptor& to_read, Descriptor& to_write);
 /// A file in memory that holds `bytes`, to be read from its start. Throws IoError.
 void openInMemory(Descriptor& file, std::string_view bytes);
 
-/// A descriptor of a new process: `number` is its number there; without a source it is /dev/null.
+/// A descriptor of a new process: `number` is its number there; without a source it is the null device.
 struct Inherited {
   int number;
   int source = -1;
 };
 
-/// The program of this name in a folder of PATH. Folders that are relative or empty are skipped, because they are below the working folder.
-std::optional<std::filesystem::path> findProgram(std::string_view name);
-
 /// Starts a program, which is an absolute path. words[0] is the name that it is called by. It inherits the standard streams, what is
-/// listed, and a few variables of the environment (process.cpp names them). Throws IoError if it cannot be started.
+/// listed, and a few variables of the environment (posix/process.cpp and windows/process.cpp name them). Throws IoError if it cannot be
+/// started.
 pid_t startProcess(const std::filesystem::path& program, std::vector<std::string> words, std::span<const Inherited> inherited);
 
-/// Waits for the end of a process. Returns its status, as waitpid(2) does.
-int waitForProcess(pid_t process);
+/// How a process ended: by itself with an exit code, or by a signal; 0 is none. On Windows an exception that ended it counts as the signal
+/// of the same fault.
+struct ProcessEnd {
+  int code = 0, signal = 0;
+};
+
+/// Waits for the end of a process.
+ProcessEnd waitForProcess(pid_t process);
+
+/// Ends a process at once.
+void killProcess(pid_t process);
 
 /// Whether a signal that ended a process comes from a fault of its own; others are sent by the system or by hand.
 bool isFault(int signal);
+/// "Segmentation fault".
+std::string signalText(int signal);
+
+/// Waits until a pipe has bytes or is closed. Returns whether that is so before the time is over.
+bool waitForBytes(int descriptor, std::chrono::milliseconds time);
+
+/// From now on this process ends when its parent does.
+void endWithParent();
+
+/// Ends this process when it has computed for so many seconds, and refuses it more memory for its data than so many bytes. It leaves no
+/// core file.
+void limitThisProcess(uint64_t seconds, uint64_t memory);
+
+/// What this process and those that it waited for have used.
+struct ProcessUsage {
+  double processor_seconds = 0;
+  uint64_t peak_memory = 0;  ///< bytes
+};
+ProcessUsage usageOfProcesses();
 
 }  // namespace cloudbake

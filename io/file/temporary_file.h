@@ -1,11 +1,10 @@
 // Files that are written beside their target and then take its place.
 #pragma once
 
-#include <sys/types.h>
-
+#include <cstdint>
 #include <filesystem>
 
-#include "io/file/process.h"
+#include "io/file/descriptor.h"
 
 namespace cloudbake {
 
@@ -13,8 +12,8 @@ namespace cloudbake {
 /// process takes it for one that a killed process left. It is removed with this object, unless it was renamed.
 class TemporaryFile {
  public:
-  /// A new file with this mode, less what the umask forbids. If it cannot be made, descriptor() is −1 and error() says why.
-  TemporaryFile(const std::filesystem::path& folder, mode_t mode);
+  /// A new file with these permissions, less what the umask forbids. If it cannot be made, descriptor() is −1 and error() says why.
+  TemporaryFile(const std::filesystem::path& folder, uint32_t permissions);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile();

@@ -4,10 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -17,6 +13,7 @@
 #include <xxhash.h>
 
 #include "core/error.h"
+#include "io/file/system_file.h"
 
 namespace cloudbake {
 
@@ -33,7 +30,10 @@ const char* cureFor(int error) {
     case EPERM: return "choose a folder you may write to, or change its permissions";
     case EROFS: return "the disk is mounted read-only; choose another folder";
     case ENOSPC:
-    case EDQUOT: return "free some space or choose another disk";
+#ifdef EDQUOT
+    case EDQUOT:
+#endif
+      return "free some space or choose another disk";
     case EISDIR: return "a folder has this name; choose another name";
     case ENAMETOOLONG: return "choose a shorter name";
     default: return "check the disk and try again";
@@ -53,28 +53,34 @@ bool isOfProcess(const fs::path& target) {
   return text == "/dev/stdout" || text == "/dev/stderr" || text.starts_with("/dev/fd/") || text.starts_with("/proc/");
 }
 
-// "a pipe", for messages.
-const char* kindOf(mode_t mode) {
-  return S_ISDIR(mode) ? "a folder" : S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : S_ISREG(mode) ? "a file" : "a device";
+// For messages.
+const char* textOf(FileKind kind) {
+  switch (kind) {
+    case FileKind::kFile: return "a file";
+    case FileKind::kFolder: return "a folder";
+    case FileKind::kPipe: return "a pipe";
+    case FileKind::kSocket: return "a socket";
+    default: return "a device";
+  }
 }
 
 // Whether a path leads to a pipe or a device: nothing in it could be replaced. Throws IoError if it is nothing that may be written.
 bool isStream(const fs::path& target) {
-  struct stat status {};
-  if (::stat(target.c_str(), &status) != 0) {
+  const auto status = statusOf(target);
+  if (!status) {
     if (errno != ENOENT) failWriting(target, errno);
     return false;
   }
-  if (S_ISDIR(status.st_mode)) failWriting(target, EISDIR);
-  if (::access(target.c_str(), W_OK) != 0) failWriting(target, errno);
-  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || isOfProcess(target)) return true;
-  if (!S_ISREG(status.st_mode))
-    throw IoError(target.string(), fmt::format("cannot write: this is {}; choose another name", kindOf(status.st_mode)));
+  if (status->kind == FileKind::kFolder) failWriting(target, EISDIR);
+  if (const int failure = whyNotWritable(target); failure != 0) failWriting(target, failure);
+  if (status->kind == FileKind::kPipe || status->kind == FileKind::kCharacterDevice || isOfProcess(target)) return true;
+  if (status->kind != FileKind::kFile)
+    throw IoError(target.string(), fmt::format("cannot write: this is {}; choose another name", textOf(status->kind)));
   return false;
 }
 
 // Of the temporary file: a new file gets what the umask leaves. One that replaces a file is nobody else's until it has its permissions.
-mode_t firstModeFor(const fs::path& target) { return ::access(target.c_str(), F_OK) == 0 ? 0600 : 0666; }
+uint32_t firstPermissionsFor(const fs::path& target) { return statusOf(target) ? 0600 : 0666; }
 
 // Writes a byte into a folder and takes it back. Returns an errno.
 int probe(const fs::path& folder) {
@@ -84,10 +90,9 @@ int probe(const fs::path& folder) {
 }
 
 // Gives a file the permissions of the one that it replaces. Returns an errno.
-int copyMode(const fs::path& from, int to) {
-  struct stat status {};
-  if (::stat(from.c_str(), &status) != 0) return 0;
-  return ::fchmod(to, status.st_mode & 07777) == 0 ? 0 : errno;
+int copyPermissions(const fs::path& from, int to) {
+  const auto status = statusOf(from);
+  return status ? setPermissions(to, status->permissions) : 0;
 }
 
 [[noreturn]] void failReading(const fs::path& file, int error) {
@@ -97,25 +102,25 @@ int copyMode(const fs::path& from, int to) {
 
 std::string readAll(const fs::path& file, bool may_be_pipe) {
   // The kind is checked before the file is opened, because opening a pipe waits for its writer, and opening a device may do anything.
-  struct stat status {};
-  if (::stat(file.c_str(), &status) != 0) failReading(file, errno);
-  if (!S_ISREG(status.st_mode) && !(may_be_pipe && (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode))))
+  const auto status = statusOf(file);
+  if (!status) failReading(file, errno);
+  const FileKind kind = status->kind;
+  if (kind != FileKind::kFile && !(may_be_pipe && (kind == FileKind::kPipe || kind == FileKind::kCharacterDevice)))
     throw IoError(file.string(),
-                  fmt::format("cannot read: this is {}; name a file{}", kindOf(status.st_mode), S_ISDIR(status.st_mode) ? " in it" : ""));
+                  fmt::format("cannot read: this is {}; name a file{}", textOf(kind), kind == FileKind::kFolder ? " in it" : ""));
   const auto check_size = [&](uint64_t size) {
     if (size > kMaxFileBytes)
       throw InputError(file.string(), fmt::format("the file is larger than {} GiB, the limit; name a smaller one", kMaxFileBytes >> 30));
   };
-  check_size(uint64_t(status.st_size));
-  const Descriptor source(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | (may_be_pipe ? 0 : O_NONBLOCK)));
+  check_size(status->size);
+  const Descriptor source(openToRead(file, may_be_pipe));
   if (source.number < 0) failReading(file, errno);
 
-  std::string bytes(size_t(status.st_size) + 1, '\0');  // one more, so that the end is met without a longer copy
+  std::string bytes(size_t(status->size) + 1, '\0');  // one more, so that the end is met without a longer copy
   size_t filled = 0;
   for (;;) {
     if (filled == bytes.size()) bytes.resize(bytes.size() + 65536);  // for pipes, and for files that grew
-    const ssize_t count = ::read(source.number, bytes.data() + filled, bytes.size() - filled);
-    if (count < 0 && errno == EINTR) continue;
+    const long count = readSome(source.number, std::as_writable_bytes(std::span(bytes).subspan(filled)));
     if (count < 0) throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno) + "; check the disk");
     if (count == 0) break;
     filled += size_t(count);
@@ -129,13 +134,13 @@ std::string readAll(const fs::path& file, bool may_be_pipe) {
 
 PendingFile::PendingFile(const fs::path& target) : target_(target) {
   if (isStream(target)) {
-    stream_.number = ::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    stream_.number = openToWrite(target);
     if (stream_.number < 0) failWriting(target, errno);
     return;
   }
   replaced_ = followLinks(target);
-  file_.emplace(folderOf(replaced_), firstModeFor(replaced_));
-  const int error = file_->error() != 0 ? file_->error() : copyMode(replaced_, file_->descriptor());
+  file_.emplace(folderOf(replaced_), firstPermissionsFor(replaced_));
+  const int error = file_->error() != 0 ? file_->error() : copyPermissions(replaced_, file_->descriptor());
   if (error != 0) failWriting(target_, error);
 }
 
@@ -145,13 +150,10 @@ void PendingFile::write(std::string_view bytes) {
 
 void PendingFile::commit() {
   if (!file_) return stream_.close();
-  int error = ::fsync(file_->descriptor()) == 0 ? 0 : errno;
+  int error = syncFile(file_->descriptor());
   if (error == 0) error = file_->renameTo(replaced_);
+  if (error == 0) error = syncFolder(folderOf(replaced_));  // the rename itself must reach the disk too
   if (error != 0) failWriting(target_, error);
-
-  // The rename itself must reach the disk too. Some file systems cannot fsync a folder (EINVAL); the rename is still valid then.
-  const Descriptor directory(::open(folderOf(replaced_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.number >= 0 && ::fsync(directory.number) != 0 && errno != EINVAL) failWriting(target_, errno);
 }
 
 void writeFileAtomically(const fs::path& target, std::string_view bytes) {

@@ -8,14 +8,6 @@
 #include <fmt/format.h>
 #include <httplib.h>
 
-#include <arpa/inet.h>
-#include <fcntl.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/eventfd.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -34,6 +26,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/http/sockets.h"
 
 namespace cloudbake {
 
@@ -53,7 +46,6 @@ constexpr size_t kMostWaiting = 256;          // connections whose request is no
 constexpr milliseconds kGlance{100};          // how often a waiting thread looks whether the server stops, or its client is gone
 constexpr int kMostStreams = 32;
 constexpr size_t kThreads = kMostStreams + 16;
-constexpr int kBacklog = 1024;
 
 // --- What is shown ---
 
@@ -143,11 +135,11 @@ class Board {
 class Connection : public httplib::Stream {
  public:
   // `busy` counts the connections that have a thread or wait for one.
-  Connection(int socket, std::string request, const Board& board, const std::atomic<size_t>& busy, milliseconds write_time)
+  Connection(Socket socket, std::string request, const Board& board, const std::atomic<size_t>& busy, milliseconds write_time)
       : socket_(socket), request_(std::move(request)), board_(board), busy_(busy), write_time_(write_time) {}
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
-  ~Connection() override { ::close(socket_); }
+  ~Connection() override { closeSocket(socket_); }
 
   ssize_t read(char* bytes, size_t size) override {
     const size_t count = request_.copy(bytes, size, read_);
@@ -156,17 +148,16 @@ class Connection : public httplib::Stream {
   }
 
   ssize_t write(const char* bytes, size_t size) override {
-    ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK) && waitUntilRead())
-      count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    long count = sendNow(socket_, bytes, size);
+    if (count < 0 && wouldWait() && waitUntilRead()) count = sendNow(socket_, bytes, size);
     return count > 0 ? count : -1;
   }
 
   bool is_readable() const override { return read_ < request_.size(); }
   // Whether the client is still there.
   bool is_writable() const override {
-    pollfd client{socket_, POLLRDHUP, 0};
-    return ::poll(&client, 1, 0) >= 0 && (client.revents & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
+    Waiting client{socket_, Waiting::For::kNothing};
+    return waitFor({&client, 1}, 0) && !client.is_gone;
   }
   void get_remote_ip_and_port(std::string&, int&) const override {}
   void get_local_ip_and_port(std::string&, int&) const override {}
@@ -177,15 +168,15 @@ class Connection : public httplib::Stream {
   // Whether the client takes more in time, and before the server stops or another client needs the thread.
   bool waitUntilRead() const {
     for (const auto end = Clock::now() + write_time_; !board_.stops() && Clock::now() < end;) {
-      pollfd client{socket_, POLLOUT, 0};
-      const int ready = ::poll(&client, 1, int(kGlance.count()));
-      if (ready > 0) return (client.revents & POLLOUT) != 0;
-      if ((ready < 0 && errno != EINTR) || busy_ > kThreads) return false;
+      Waiting client{socket_, Waiting::For::kRoom};
+      if (!waitFor({&client, 1}, int(kGlance.count()))) return false;
+      if (client.is_ready) return !client.is_gone;
+      if (busy_ > kThreads) return false;
     }
     return false;
   }
 
-  int socket_;
+  Socket socket_;
   std::string request_;
   size_t read_ = 0;
   const Board& board_;
@@ -197,43 +188,36 @@ class Connection : public httplib::Stream {
 class Lobby {
  public:
   // Receives a socket with what its client has sent: a request, or part of one.
-  using Receiver = std::function<void(int socket, std::string request)>;
-  Lobby(int listener, milliseconds request_time, Receiver receive)
-      : listener_(listener), wake_(::eventfd(0, EFD_CLOEXEC)), request_time_(request_time), receive_(std::move(receive)) {
-    ::fcntl(listener, F_SETFL, O_NONBLOCK);
-  }
+  using Receiver = std::function<void(Socket socket, std::string request)>;
+  Lobby(Socket listener, milliseconds request_time, Receiver receive)
+      : listener_(listener), request_time_(request_time), receive_(std::move(receive)) {}
   Lobby(const Lobby&) = delete;
   Lobby& operator=(const Lobby&) = delete;
   ~Lobby() {
-    for (const Guest& guest : guests_) ::close(guest.socket);
-    ::close(wake_);
+    for (const Guest& guest : guests_) closeSocket(guest.socket);
   }
 
   // Runs until stop is called, in any order.
   void run() {
     for (;;) {
-      std::vector<pollfd> all{{wake_, POLLIN, 0}, {listener_, POLLIN, 0}};
-      for (const Guest& guest : guests_) all.push_back({guest.socket, POLLIN, 0});
-      if (::poll(all.data(), all.size(), millisecondsLeft()) < 0 && errno != EINTR) return;
-      if (all[0].revents != 0) return;
+      std::vector<Waiting> all{{wake_.socket()}, {listener_}};
+      for (const Guest& guest : guests_) all.push_back({guest.socket});
+      if (!waitFor(all, millisecondsLeft()) || all[0].is_ready) return;
       auto guest = guests_.begin();
       for (size_t i = 2; i < all.size(); ++i) {
         const auto next = std::next(guest);
-        if ((all[i].revents != 0 && hasSent(*guest)) || Clock::now() >= guest->end) dismiss(guest);
+        if ((all[i].is_ready && hasSent(*guest)) || Clock::now() >= guest->end) dismiss(guest);
         guest = next;
       }
-      if (all[1].revents != 0) accept();
+      if (all[1].is_ready) accept();
     }
   }
 
-  void stop() const {
-    const uint64_t one = 1;
-    (void)!::write(wake_, &one, sizeof one);
-  }
+  void stop() const { wake_.wake(); }
 
  private:
   struct Guest {
-    int socket;
+    Socket socket;
     Clock::time_point end;
     std::string request{};
   };
@@ -246,8 +230,8 @@ class Lobby {
 
   void accept() {
     for (;;) {
-      const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-      const bool is_full = socket < 0 && (errno == EMFILE || errno == ENFILE) && !guests_.empty();
+      const Socket socket = acceptNow(listener_);
+      const bool is_full = socket < 0 && areTooManyOpen() && !guests_.empty();
       if (socket < 0 && !is_full) return;
       if (is_full || guests_.size() == kMostWaiting) {
         hasSent(guests_.front());  // its request may have come meanwhile
@@ -261,66 +245,37 @@ class Lobby {
   // or all before the client's end.
   static bool hasSent(Guest& guest) {
     std::array<char, 4096> bytes{};
-    const ssize_t count = ::recv(guest.socket, bytes.data(), std::min(bytes.size(), kLongestRequest - guest.request.size()), MSG_DONTWAIT);
-    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return false;
+    const long count = receiveNow(guest.socket, bytes.data(), std::min(bytes.size(), kLongestRequest - guest.request.size()));
+    if (count < 0 && wouldWait()) return false;
     if (count > 0) guest.request.append(bytes.data(), size_t(count));
     return count <= 0 || guest.request.find("\r\n\r\n") != std::string::npos || guest.request.size() == kLongestRequest;
   }
 
   void dismiss(Place guest) {
     if (guest->request.empty())
-      ::close(guest->socket);
+      closeSocket(guest->socket);
     else
       receive_(guest->socket, std::move(guest->request));
     guests_.erase(guest);
   }
 
-  const int listener_, wake_;
+  const Socket listener_;
+  const WakeUp wake_;
   const milliseconds request_time_;
   const Receiver receive_;
   std::list<Guest> guests_;  // in the order in which they came
 };
 
-// A socket that listens on 127.0.0.1, and its port.
-int listenOn(int port) {
-  const auto refuse = [&](int socket) {
-    const int error = errno;
-    if (socket >= 0) ::close(socket);
-    const std::string cure = error == EADDRINUSE
-                                 ? "end the program that uses it, or give another: --serve PORT, or --serve 0 for any free one"
-                             : error == EACCES ? "ports below 1024 belong to the system; give a higher one, or --serve 0 for any free one"
-                                               : "try --serve 0, which takes any free one";
-    throw IoError("", fmt::format("port {} of 127.0.0.1 cannot be used: {}; {}", port, std::strerror(error), cure));
-  };
-  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) refuse(socket);
-  const int yes = 1;  // a port whose last server has just ended can be used again
-  ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(uint16_t(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || ::listen(socket, kBacklog) != 0) refuse(socket);
-  return socket;
-}
-
-int portOf(int socket) {
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
-  return ntohs(address.sin_port);
-}
-
 // --- Answers ---
 
 class Answers : private httplib::Server {
  public:
-  Answers(Board& board, int listener, const PageServerLimits& limits)
+  Answers(Board& board, Socket listener, const PageServerLimits& limits)
       : board_(board),
         listener_(listener),
         port_(portOf(listener)),
         limits_(limits),
-        lobby_(listener, limits.request, [this](int socket, std::string request) { receive(socket, std::move(request)); }) {
+        lobby_(listener, limits.request, [this](Socket socket, std::string request) { receive(socket, std::move(request)); }) {
     svr_sock_ = listener;  // the library takes the server for stopped without it
     set_default_headers({{"Cache-Control", "no-store"},
                          {"X-Content-Type-Options", "nosniff"},
@@ -333,7 +288,7 @@ class Answers : private httplib::Server {
     });
   }
   // The thread that serves must have ended.
-  ~Answers() override { ::close(listener_); }
+  ~Answers() override { closeSocket(listener_); }
 
   int port() const { return port_; }
 
@@ -348,7 +303,7 @@ class Answers : private httplib::Server {
   void end() const { lobby_.stop(); }
 
  private:
-  void receive(int socket, std::string request) {
+  void receive(Socket socket, std::string request) {
     const auto connection = std::make_shared<Connection>(socket, std::move(request), board_, busy_, limits_.write);
     if (!threads_ || svr_sock_ == INVALID_SOCKET) throw std::logic_error("PageServer: a request while nothing serves");
     ++busy_;
@@ -421,7 +376,8 @@ class Answers : private httplib::Server {
   }
 
   Board& board_;  // outlives all connections
-  const int listener_, port_;
+  const Socket listener_;
+  const int port_;
   const PageServerLimits limits_;
   std::atomic<size_t> busy_ = 0;
   httplib::ThreadPool* threads_ = nullptr;
@@ -454,6 +410,14 @@ class HttplibPageServer : public PageServer {
 };
 
 }  // namespace
+
+void refusePort(int port, int error) {
+  const std::string cure = error == EADDRINUSE
+                               ? "end the program that uses it, or give another: --serve PORT, or --serve 0 for any free one"
+                           : error == EACCES ? "ports below 1024 belong to the system; give a higher one, or --serve 0 for any free one"
+                                             : "try --serve 0, which takes any free one";
+  throw IoError("", fmt::format("port {} of 127.0.0.1 cannot be used: {}; {}", port, std::strerror(error), cure));
+}
 
 std::unique_ptr<PageServer> openPageServer(int port, const PageServerLimits& limits) {
   return std::make_unique<HttplibPageServer>(port, limits);

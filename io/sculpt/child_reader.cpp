@@ -1,13 +1,6 @@
 // The answer is a byte 'S' and the sculpt with its warnings and the hashes of other files that were read, or 'E' and the error, each after
-// the version. docs/architecture.md, Difficult parts, says what this relies on. Linux can limit the data of a process (RLIMIT_DATA,
-// setrlimit(2)); sanitizers reserve terabytes, so it is not limited in their builds.
+// the version. docs/architecture.md, Difficult parts, says what this relies on.
 #include "io/sculpt/child_reader.h"
-
-#include <poll.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -245,8 +238,8 @@ class Child {
   ~Child() {
     if (process_ > 0) kill(), wait();
   }
-  void kill() const { ::kill(process_, SIGKILL); }
-  int wait() { return waitForProcess(std::exchange(process_, 0)); }
+  void kill() const { killProcess(process_); }
+  ProcessEnd wait() { return waitForProcess(std::exchange(process_, 0)); }
 
  private:
   pid_t process_;
@@ -267,25 +260,23 @@ Answer collectAnswer(int descriptor, const ChildLimits& limits) {
       answer.trouble = "its reader process was stopped after " + shortestText(limits.seconds) + " seconds";
       break;
     }
-    pollfd waiting{descriptor, POLLIN, 0};
-    if (poll(&waiting, 1, int(left)) <= 0) continue;
-    const ssize_t count = read(descriptor, block.data(), block.size());
+    if (!waitForBytes(descriptor, std::chrono::milliseconds(left))) continue;
+    const long count = readSome(descriptor, std::as_writable_bytes(std::span(block)));
     if (count == 0) break;
-    if (count < 0 && errno != EINTR) answer.trouble = std::string("its reader process cannot be listened to: ") + std::strerror(errno);
+    if (count < 0) answer.trouble = std::string("its reader process cannot be listened to: ") + std::strerror(errno);
     if (count > 0) answer.bytes.append(block.data(), size_t(count));
   }
   return answer;
 }
 
 // How a child ended that was not stopped and gave no whole answer.
-std::string whatHappened(int status) {
-  if (WIFSIGNALED(status) && isFault(WTERMSIG(status)))
-    return std::string("its reader process crashed (") + strsignal(WTERMSIG(status)) + "); the file may be damaged: export it again, or";
-  if (WIFSIGNALED(status))
-    return std::string("its reader process was killed (") + strsignal(WTERMSIG(status)) +
+std::string whatHappened(const ProcessEnd& end) {
+  if (isFault(end.signal))
+    return "its reader process crashed (" + signalText(end.signal) + "); the file may be damaged: export it again, or";
+  if (end.signal != 0)
+    return "its reader process was killed (" + signalText(end.signal) +
            "); close other programs if the system had no memory left, and try again, or export it";
-  return "its reader process ended with exit code " + std::to_string(WEXITSTATUS(status)) +
-         " and without a result that is whole; export it again, or";
+  return "its reader process ended with exit code " + std::to_string(end.code) + " and without a result that is whole; export it again, or";
 }
 
 }  // namespace
@@ -297,11 +288,11 @@ Sculpt readInChild(const fs::path& file, const std::string& bytes, const std::st
   const Answer answer = collectAnswer(pipe.number, limits);
   pipe.close();
   if (!answer.trouble.empty() || answer.bytes.size() > limits.largest) child.kill();
-  const int status = child.wait();
+  const ProcessEnd end = child.wait();
   requireMemory({"the parts of this sculpt, which its reader process has passed on so far,", double(answer.bytes.size()), kReadingCure},
                 limits.largest, file.string());
   if (!answer.trouble.empty()) throw InputError(file.string(), answer.trouble + "; export a smaller sculpt, or export it as glTF or OBJ");
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) try {
+  if (end.signal == 0 && end.code == 0) try {
       ByteReader reader{answer.bytes};
       const std::string_view kind = reader.take(kSculptAnswer.size());
       if (kind == kErrorAnswer) throwError(reader);
@@ -309,26 +300,18 @@ Sculpt readInChild(const fs::path& file, const std::string& bytes, const std::st
     } catch (const std::out_of_range&) {
       // Reported below
     }
-  throw InputError(file.string(), whatHappened(status) + " as glTF or OBJ");
+  throw InputError(file.string(), whatHappened(end) + " as glTF or OBJ");
 }
 
 int serveChildReader(int argc, char** argv) {
   if (argc != 6) return 1;
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  endWithParent();
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches this process too, but the parent decides whether to stop
   std::string_view limits = argv[5];
   const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits)),
              if_unstated = parseInteger(takeWord(limits));
   if (!seconds || !memory || !outside || !if_unstated) return 1;
-  const auto limit = [](auto resource, uint64_t most) {
-    const rlimit value{most, most};
-    setrlimit(resource, &value);
-  };
-  limit(RLIMIT_CPU, uint64_t(*seconds));
-  limit(RLIMIT_CORE, 0);
-#if !defined(__SANITIZE_ADDRESS__)
-  limit(RLIMIT_DATA, uint64_t(*memory));
-#endif
+  limitThisProcess(uint64_t(*seconds), uint64_t(*memory));
 
   std::string answer;
   try {

@@ -1,7 +1,6 @@
 #include "pipeline/batch/batch.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <functional>
@@ -13,6 +12,7 @@
 #include "core/sculpt.h"
 #include "core/text/scan.h"
 #include "io/file/own_file.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
 #include "pipeline/batch/make_assets.h"
@@ -26,25 +26,6 @@ namespace cloudbake {
 namespace {
 
 namespace fs = std::filesystem;
-
-double secondsOf(const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); }
-
-// The usage of this process and of the readers that it started.
-struct Usage {
-  double processor_seconds = 0;
-  uint64_t peak_memory = 0;  // bytes
-};
-
-Usage usageSoFar() {
-  Usage all;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage usage{};
-    ::getrusage(who, &usage);
-    all.processor_seconds += secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime);
-    all.peak_memory = std::max(all.peak_memory, uint64_t(usage.ru_maxrss) * 1024);
-  }
-  return all;
-}
 
 std::string workText(const std::vector<PlannedAsset>& assets, const std::vector<AssetRecord>& records) {
   std::string text;
@@ -267,9 +248,10 @@ Work planWork(const Settings& settings, std::span<const Given> given) {
 }  // namespace
 
 BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, std::atomic<int>& stop, BatchListener& listener) {
+  helpIfHelper(settings, given);
   const BatchSettings& batch = settings.batch;
   const Stopwatch watch;
-  const double processor_seconds_before = usageSoFar().processor_seconds;
+  const double processor_seconds_before = usageOfProcesses().processor_seconds;
   Work work = planWork(settings, given);
   const BatchPlan& plan = work.plan;
 
@@ -288,7 +270,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
   const std::vector<AssetPicture> pictures = picturesOf(report, output, settings, listener);
   report.seconds = watch.elapsed();
-  const Usage usage = usageSoFar();
+  const ProcessUsage usage = usageOfProcesses();
   report.processor_seconds = usage.processor_seconds - processor_seconds_before;
   report.peak_memory = usage.peak_memory;
 

@@ -42,6 +42,9 @@ struct AssetSteps {
 /// none is started; a copy of the program sets it itself.
 void makeAssets(std::span<const Job> jobs, uint64_t memory, std::atomic<int>& stop, const AssetRun& run, const AssetSteps& steps);
 
+/// In a copy of the program that makes assets for another, makes them until that ends it; else does nothing.
+void helpIfHelper(const Settings& settings, std::span<const Given> given);
+
 /// How many assets are made at once.
 size_t assetsAtOnce(const Settings& settings);
 

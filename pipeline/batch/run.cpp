@@ -102,7 +102,7 @@ void failByFault(const std::string& source, const std::string& fault, AssetRecor
 
 // A signal from outside is no fault of the asset.
 void failByCrash(const std::string& source, int signal, AssetRecord& record) {
-  const std::string name = std::string(" (") + ::strsignal(signal) + ")";
+  const std::string name = " (" + signalText(signal) + ")";
   if (isFault(signal))
     failByFault(source, ::strsignal(signal), record);
   else

@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -15,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "io/file/system_file.h"
 #include "io/sculpt/referenced_files.h"
 #include "pipeline/asset/levels.h"
 #include "pipeline/options/presets.h"
@@ -126,12 +123,12 @@ std::vector<std::string> ownedLevels(const fs::path& output, const std::string& 
   return owned;
 }
 
-int openLock(const fs::path& file, int mode) {
-  const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock < 0) throw IoError(file.string(), std::string("cannot write: ") + std::strerror(errno) + "; choose another output folder");
-  if (::flock(lock, mode | LOCK_NB) == 0) return lock;
-  const int error = errno;
-  ::close(lock);
+void lockFile(const fs::path& file, LockKind kind, Descriptor& lock) {
+  lock.number = openLockFile(file);
+  if (lock.number < 0)
+    throw IoError(file.string(), std::string("cannot write: ") + std::strerror(errno) + "; choose another output folder");
+  const int error = lockNow(lock.number, kind);
+  if (error == 0) return;
   if (error != EWOULDBLOCK) throw IoError(file.string(), std::string("cannot lock: ") + std::strerror(error) + "; choose another disk");
   throw Error(ExitCode::kTryAgain, file.parent_path().parent_path().string(), 0, 0,
               "another batch is writing to this folder: try again when it has ended, or choose another -o");
@@ -294,18 +291,9 @@ void AssetCache::add(const AssetRecord& record, const AssetBytes& bytes) const {
 OutputLock::OutputLock(const fs::path& output, int shard, int shards) {
   const fs::path folder = stateFolder(output);
   createFolder(folder);
-  files_.push_back(openLock(folder / kBatchLock, shards > 0 ? LOCK_SH : LOCK_EX));
+  lockFile(folder / kBatchLock, shards > 0 ? LockKind::kShared : LockKind::kExclusive, of_all_);
   if (shards == 0) return;
-  try {
-    files_.push_back(openLock(folder / ("lock-" + std::to_string(shard) + "-of-" + std::to_string(shards)), LOCK_EX));
-  } catch (...) {
-    ::close(files_.front());
-    throw;
-  }
-}
-
-OutputLock::~OutputLock() {
-  for (const int file : files_) ::close(file);
+  lockFile(folder / ("lock-" + std::to_string(shard) + "-of-" + std::to_string(shards)), LockKind::kExclusive, of_shard_);
 }
 
 namespace {
@@ -325,7 +313,7 @@ std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<
   std::error_code error;
   for (fs::recursive_directory_iterator entry(state, error), end; !error && entry != end; entry.increment(error)) {
     const fs::path& file = entry->path();
-    if (!entry->is_regular_file(error) || !file.native().ends_with(".glb.json")) continue;
+    if (!entry->is_regular_file(error) || !file.filename().string().ends_with(".glb.json")) continue;
     const std::string name = file.lexically_relative(state).replace_extension().generic_string();
     if (names.contains(name)) continue;
     StaleRecord& one = stale.emplace_back();

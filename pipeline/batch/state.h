@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/file/descriptor.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_report.h"
 #include "pipeline/batch/plan.h"
@@ -73,12 +74,9 @@ struct AssetCache {
 class OutputLock {
  public:
   OutputLock(const std::filesystem::path& output, int shard, int shards);
-  ~OutputLock();
-  OutputLock(const OutputLock&) = delete;
-  OutputLock& operator=(const OutputLock&) = delete;
 
  private:
-  std::vector<int> files_;
+  Descriptor of_all_, of_shard_;
 };
 
 /// Removes outputs that earlier batches wrote and `kept` does not name, with their levels, live views and records. Files that were changed

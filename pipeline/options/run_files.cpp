@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fnmatch.h>
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -14,7 +11,9 @@
 #include "core/error.h"
 #include "core/text/scan.h"
 #include "core/text/toml.h"
+#include "io/file/find_files.h"
 #include "io/file/own_file.h"
+#include "io/file/system_file.h"
 #include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/referenced_files.h"
@@ -29,15 +28,14 @@ namespace fs = std::filesystem;
 using Identity = std::tuple<uint64_t, uint64_t, std::string>;
 
 std::optional<Identity> identityOf(const fs::path& path) {
-  struct stat status {};
   const fs::path target = followLinks(path);
-  if (::stat(target.c_str(), &status) == 0) {
-    if (!S_ISREG(status.st_mode)) return std::nullopt;
-    return Identity{status.st_dev, status.st_ino, ""};
+  if (const auto status = statusOf(target)) {
+    if (status->kind != FileKind::kFile) return std::nullopt;
+    return Identity{status->device, status->number, ""};
   }
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const std::string name = lowerCase(target.filename().string());
-  if (::stat(folder.c_str(), &status) == 0) return Identity{status.st_dev, status.st_ino, name};
+  if (const auto status = statusOf(folder)) return Identity{status->device, status->number, name};
   return Identity{0, 0, lowerCase(fs::absolute(target).lexically_normal().string())};
 }
 
@@ -50,7 +48,7 @@ std::vector<fs::path> filesOf(const RunFile& output) {
   const fs::path folder = output.path.has_parent_path() ? output.path.parent_path() : fs::path(".");
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (name.starts_with(stem) && ::fnmatch(output.ending.c_str(), name.c_str() + stem.size(), 0) == 0) found.push_back(entry->path());
+    if (name.starts_with(stem) && matchesPattern(output.ending, std::string_view(name).substr(stem.size()))) found.push_back(entry->path());
   }
   return found;
 }
@@ -72,7 +70,7 @@ bool mayWrite(const RunFile& output, const fs::path& path) {
   std::error_code error;
   if (!fs::equivalent(here, there, error)) return false;
   const std::string stem = lowerCase(output.path.filename().string()), name = lowerCase(target.filename().string());
-  return name.starts_with(stem) && ::fnmatch(output.ending.c_str(), name.c_str() + stem.size(), 0) == 0;
+  return name.starts_with(stem) && matchesPattern(output.ending, std::string_view(name).substr(stem.size()));
 }
 
 void addStrings(const toml::node& node, const fs::path& folder, std::vector<fs::path>& named) {

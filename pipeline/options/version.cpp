@@ -66,14 +66,16 @@ std::string versionText() {
 
 std::vector<std::filesystem::path> bakeLibraries() {
   std::vector<std::filesystem::path> libraries;
+#ifndef CLOUDBAKE_PORTABLE
   for (const char* name : {"libcloudbake_volumes.so", "libcloudbake_foreign.so"})
     if (const auto library = ownLibrary(name)) libraries.push_back(*library);
+#endif
   return libraries;
 }
 
 const std::string& buildHash() {
   static const std::string hash = [] {
-    std::string text = hashBytes(readFileBytes(kThisProgram));
+    std::string text = hashBytes(readFileBytes(thisProgram()));
     for (const std::filesystem::path& library : bakeLibraries()) text += hashBytes(readFileBytes(library));
     return hashBytes(text + versionText());
   }();

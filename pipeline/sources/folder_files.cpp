@@ -84,7 +84,7 @@ FolderFiles filesToShow(const fs::path& folder) {
 std::vector<std::string> linesAboutUnread(std::span<const fs::path> files) {
   std::map<std::string, std::vector<fs::path>> kinds;
   for (const fs::path& file : files)
-    if (const std::string extension = extensionOf(file); !file.filename().native().starts_with('.') && !isBesideSculpts(extension))
+    if (const std::string extension = extensionOf(file); !file.filename().string().starts_with('.') && !isBesideSculpts(extension))
       kinds[extension].push_back(file);
   std::vector<std::string> lines;
   for (const auto& [extension, of_kind] : kinds) {

@@ -1135,7 +1135,7 @@ def installed_from_a_zip(found):
 
 
 def package(archive, *programs):
-    script = pathlib.Path(ADDONS).parent / "scripts/package"
+    script = pathlib.Path(ADDONS).parent / "scripts/package_addon"
     subprocess.run([sys.executable, script, "-o", archive, *(word for program in programs for word in ("--program", program))], check=True)
 
 

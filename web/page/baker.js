@@ -6,6 +6,8 @@ import { element, make, onClick, setPageState } from '../../viewer/dom.js';
 import { GlbReader, sceneOfGlb } from '../../viewer/glb.js';
 import { add, normalize } from '../../viewer/vectors.js';
 import { Viewer } from '../../viewer/viewer.js';
+import { GrowPanel } from './grow.js';
+import { optionControl } from './option_control.js';
 
 const textOf = (/** @type {string} */ id) => element(id).textContent;
 const folderOf = (/** @type {string} */ path) => path.slice(0, path.lastIndexOf('/') + 1);
@@ -93,9 +95,10 @@ function download(bytes, name, type) {
 // --- The Worker ---
 
 class BakeWorker {
-  /** @param {Promise<WebAssembly.Module>} wasm */
-  constructor(wasm) {
+  /** @param {Promise<WebAssembly.Module>} wasm @param {string} engine the script of the module */
+  constructor(wasm, engine) {
     this.wasm = wasm;
+    this.engine = engine;
     /** @type {Worker} */
     this.worker = null;
     /** @type {Map<number, Task>} */
@@ -104,7 +107,7 @@ class BakeWorker {
   }
 
   start(/** @type {WebAssembly.Module} */ wasm) {
-    const text = `${textOf('engine')}\n${textOf('bake-worker')}\nserveBakes(createEngine);`;
+    const text = `${this.engine}\n${textOf('bake-worker')}\nserveBakes(createEngine);`;
     const address = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
@@ -115,7 +118,7 @@ class BakeWorker {
         return;
       }
       this.waiting.delete(number);
-      if (error) task.fail(Object.assign(new Error(error.message), { code: error.code }));
+      if (error) task.fail(Object.assign(new Error(error.message), { code: error.code, refused: error.refused }));
       else task.done(result);
     };
     this.worker.onerror = event => {
@@ -146,6 +149,23 @@ class BakeWorker {
   }
 }
 
+const WHOLE_FILE = 'cloudbake_whole.js';
+
+/**
+ * A Worker with the whole program, for what the module of this page lacks. Its file lies beside the page, and is read when it is needed.
+ * @returns {Promise<BakeWorker>}
+ */
+async function openWhole() {
+  const packed = await new Promise((done, fail) => {
+    window.takeWhole = done;
+    const script = Object.assign(document.createElement('script'), { src: WHOLE_FILE });
+    script.onerror = () => fail(new Error(`the file ${WHOLE_FILE}, with which this page can do it, too, is not beside the page`));
+    document.head.append(script);
+  });
+  const engine = new TextDecoder().decode(await unpackBytes(packed.engine));
+  return new BakeWorker(unpackBytes(packed.wasm).then(bytes => WebAssembly.compile(bytes)), engine);
+}
+
 // --- The page ---
 
 class Baker {
@@ -153,7 +173,10 @@ class Baker {
     this.page = JSON.parse(textOf('page'));
     this.wasm = unpackBytes(textOf('engine-wasm')).then(bytes => WebAssembly.compile(bytes));
     this.engine = makeCloudbake(createEngine, () => this.wasm);  // for the light of the asset that is shown
-    this.worker = new BakeWorker(this.wasm);
+    this.worker = new BakeWorker(this.wasm, textOf('engine'));
+    /** @type {Promise<BakeWorker>} */
+    this.whole = null;
+    this.grow = new GrowPanel(() => this.engine.presets(), job => this.addGrown(job));
     /** @type {Job[]} */
     this.jobs = [];
     this.run = 0;  // a cancel ends the bakes that were begun before it
@@ -179,7 +202,7 @@ class Baker {
     const { options, sculpts, version } = await this.engine.options();
     this.options = options.filter(({ offered }) => offered);
     this.extensions = [...sculpts.split(', '), '.fbx', '.dae', '.3ds', '.x3d', '.blend', '.vdb', '.abc', '.usd', '.usda', '.usdc', '.usdz'];
-    element('bake-file-input').accept = `${sculpts.replaceAll(' ', '')},.mtl,.bin,image/*`;  // with what a sculpt names
+    element('bake-file-input').accept = `${this.extensions.join(',')},.mtl,.bin,image/*`;  // with what a sculpt names
     element('bake-status').textContent = `cloudbake ${version}`;
     this.showOptions();
     document.documentElement.dataset.baker = 'ready';
@@ -224,37 +247,9 @@ class Baker {
     const all = element('bake-all-options').checked;
     const shown = this.options.filter(({ common }) => all || common);
     element('bake-option-list').replaceChildren(...shown.flatMap((option, i) => [
-      ...(option.group !== shown[i - 1]?.group ? [make('h2', { textContent: option.group })] : []), this.control(option),
+      ...(option.group !== shown[i - 1]?.group ? [make('h2', { textContent: option.group })] : []),
+      optionControl(option, this.values[option.name] ?? '', value => this.setOptions({ [option.name]: value }), { prefix: 'option' }),
     ]));
-  }
-
-  /** @param {OptionInfo} option */
-  control({ name, label: text, unit, fallback, help, choices, kind, low, high, words, percent, shape }) {
-    const label = make('label', {}), value = this.values[name] ?? '';
-    /** @type {any} */
-    let input;
-    if (!unit) {
-      input = make('input', { type: 'checkbox', checked: value === 'true' });
-    } else if (choices.length) {
-      input = make('select', {});
-      input.append(...['', ...choices].map(choice => new Option(choice || `${fallback || 'none'} (default)`, choice)));
-      input.value = value;
-    } else {
-      const is_number = ['whole', 'number'].includes(kind) && !words.length && !percent && !shape;
-      const range = is_number ? { type: 'number', min: low ?? '', max: high ?? '', step: kind === 'whole' ? 1 : 'any' } : { type: 'text' };
-      input = make('input', { ...range, placeholder: fallback || 'none', value, spellcheck: false });
-    }
-    input.id = `option-${name}`;
-    input.ariaDescription = `${help} (--${name})`;
-    label.classList.toggle('set', value !== '');
-    input.addEventListener('input', () => {
-      // What is no number has no value in the browser: the bake refuses this text, where an empty one would be the default.
-      const chosen = input.type === 'checkbox' ? String(input.checked || '') : input.validity.badInput ? 'no number' : input.value.trim();
-      label.classList.toggle('set', chosen !== '');
-      this.setOptions({ [name]: chosen });
-    });
-    label.append(text, input);
-    return label;
   }
 
   /** An empty value is the default. @param {Record<string, string>} values */
@@ -298,10 +293,18 @@ class Baker {
     await this.queue;
   }
 
-  /** @param {Job} job @param {object} options @param {number} run */
+  /** @param {Job} job @param {Record<string, string>} options @param {number} run */
   async bakeOne(job, options, run) {
-    this.change(job, { state: 'reading' });
+    this.change(job, { state: job.grown ? 'growing' : 'reading' });
     try {
+      if (job.grown) {
+        const { preset, values } = job.grown, given = { ...this.grow.only(options), ...values };
+        const result = await this.ask(job, 'grow', { preset, options: given });
+        if (!this.jobs.includes(job)) return;
+        this.change(job, { state: 'baked', result, options: JSON.stringify(options) });
+        await this.show(job);
+        return;
+      }
       /** @type {Record<string, Uint8Array>} */
       const files = { [job.name]: await bytesOfFile(job.file) }, asset = job.result ? null : assetIn(files[job.name]);
       if (asset) {
@@ -314,8 +317,7 @@ class Baker {
         this.change(job, { state: 'cancelled' });
         return;
       }
-      const result = await this.worker.ask('bake', { name: job.name, files, options }, stage =>
-        this.change(job, { state: `${stage} done` }));
+      const result = await this.ask(job, 'bake', { name: job.name, files, options });
       if (!this.jobs.includes(job)) return;
       this.change(job, { state: 'baked', result, options: JSON.stringify(options) });
       await this.show(job);
@@ -325,9 +327,42 @@ class Baker {
     }
   }
 
+  /** By the module of the page, or by the whole program if that refuses. @param {Job} job @param {string} task @param {object} what */
+  async ask(job, task, what) {
+    const onStage = (/** @type {string} */ stage) => this.change(job, { state: `${stage} done` });
+    let refusal = null;
+    if (task !== 'grow') try {
+      return await this.worker.ask(task, what, onStage);
+    } catch (error) {
+      if (!error.refused) throw error;
+      refusal = error;
+    }
+    if (!this.whole) this.change(job, { state: 'opening the whole program' });
+    /** @type {BakeWorker} */
+    let whole;
+    try {
+      whole = await (this.whole ??= openWhole());
+    } catch ({ message }) {
+      this.whole = null;
+      throw new Error(refusal ? `${refusal.message}; ${message}` : message);
+    }
+    return whole.ask(task, what, onStage);
+  }
+
   cancel() {
     ++this.run;
-    this.worker.stop(Object.assign(new Error('cancelled'), { isStop: true }));
+    const stop = Object.assign(new Error('cancelled'), { isStop: true });
+    this.worker.stop(stop);
+    this.whole?.then(whole => whole.stop(stop), () => {});
+  }
+
+  /** Grows a preset with these values of its options. @param {{ preset: string, values: Record<string, string> }} grown */
+  async addGrown(grown) {
+    if (!await this.ready) return;
+    const job = { path: grown.preset, name: grown.preset, file: /** @type {File} */ (null), beside: /** @type {any[]} */ ([]), grown,
+      state: 'waiting' };
+    this.jobs.push(job);
+    await this.bake([job]);
   }
 
   /** @param {Job} job @param {Partial<Job>} changes */
@@ -536,6 +571,10 @@ class Baker {
     }
     onClick('bake-sample', () => this.sample());
     onClick('start-open', () => element('bake-file-input').click());
+    onClick('start-grow', () => {
+      for (const id of ['bake-panel', 'bake-grow']) element(id).open = true;
+      element('grow-preset').focus();
+    });
     onClick('try-sun', () => window.viewer.sun.play(!window.viewer.sun.plays));
     onClick('try-exact', () => window.viewer.compareWith(window.viewer.state.against === 'exact' ? 'none' : 'exact'));
     onClick('bake-cancel', () => this.cancel());

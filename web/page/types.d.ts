@@ -4,6 +4,13 @@ type Module = typeof import('../package/cloudbake');
 type OptionInfo = Awaited<ReturnType<Module['options']>>['options'][number];
 type Asset = Awaited<ReturnType<Module['bake']>>;
 type Light = Awaited<ReturnType<Module['transmittance']>>;
+type Options = Parameters<Module['bake']>[2];
+type PresetInfo = { name: string; about: string; values: Record<string, string> };
+/** The module as the page has it; the package has fewer functions. */
+type PageModule = Omit<Module, 'CloudbakeError'> & {
+  grow(name: string, options?: Options, more?: { onStage?: (stage: string) => void }): Promise<Asset>;
+  presets(): Promise<{ presets: PresetInfo[]; options: OptionInfo[] }>;
+};
 type Lobes = ReturnType<Light['lobes']>;
 
 /** A file by its path in the folder that was given. */
@@ -23,6 +30,8 @@ interface Job extends Sculpt {
   error?: string;
   result?: Baked;
   options?: string;
+  /** A preset that is grown, with the values of its sliders. */
+  grown?: { preset: string; values: Record<string, string> };
   asset?: string;
   item?: HTMLLIElement;
   parts?: { name: HTMLElement; state: HTMLElement; show: HTMLElement; download: HTMLElement; remove: HTMLElement };
@@ -47,5 +56,6 @@ declare const createEngine: CreateEngine;
 declare function unpackBytes(text: string): Promise<Uint8Array<ArrayBuffer>>;
 declare const fflate: { zipSync(files: Record<string, [Uint8Array, object]>): Uint8Array };
 
-interface Window { baker: any }
+/** Takes what web/compose has put into cloudbake_whole.js. */
+interface Window { baker: any; takeWhole(packed: { engine: string; wasm: string }): void }
 interface DataTransferItem { getAsFileSystemHandle?(): Promise<any> }

@@ -12,6 +12,11 @@ function serveBakes(createEngine) {
       const { glb, report, summary } = await baker.bake(data, name, options, { files: beside, onStage: stage => tell({ stage }) });
       return { glb, report, summary, milliseconds: performance.now() - started };
     },
+    async grow({ preset, options }, tell) {
+      const started = performance.now();
+      const { glb, report, summary } = await baker.grow(preset, options, { onStage: stage => tell({ stage }) });
+      return { glb, report, summary, milliseconds: performance.now() - started };
+    },
     async fit({ glb, options }) {
       const light = await baker.transmittance(glb, 'asset.glb');
       try {
@@ -29,8 +34,8 @@ function serveBakes(createEngine) {
     const tell = (/** @type {object} */ answer) => postMessage({ number, ...answer });
     try {
       tell({ result: await work[task](rest, tell) });
-    } catch ({ message, code }) {
-      tell({ error: { message, code } });
+    } catch ({ message, code, refused }) {
+      tell({ error: { message, code, refused } });
     }
   };
 }

@@ -1,7 +1,6 @@
-// Functions of the C library that Emscripten's has in another way: the words of errors are those of glibc, the use of the processor and of
-// memory is that of the whole process, and locks of files, which Node lacks, are files with the number of their process. The linker turns calls of strerror into __wrap_strerror (cmake/wasm.cmake).
+// Functions of the C library that Emscripten's has in another way: the words of errors are those of glibc, and locks of files, which Node
+// lacks, are files with the number of their process. The linker turns calls of strerror into __wrap_strerror (cmake/wasm.cmake).
 #include <sys/file.h>
-#include <sys/resource.h>
 
 #include <cerrno>
 
@@ -35,16 +34,6 @@ int flock(int file, int operation) {
   const int error = cloudbake_lock(file, (operation & LOCK_EX) != 0);
   if (error != 0) errno = error;
   return error == 0 ? 0 : -1;
-}
-
-int getrusage(int who, rusage* usage) {
-  *usage = {};
-  if (who != RUSAGE_SELF) return 0;
-  double seconds = 0, kilobytes = 0;
-  cloudbake_usage(&seconds, &kilobytes);
-  usage->ru_utime = {time_t(seconds), suseconds_t((seconds - double(time_t(seconds))) * 1e6)};
-  usage->ru_maxrss = long(kilobytes);
-  return 0;
 }
 
 }  // extern "C"

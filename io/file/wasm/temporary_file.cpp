@@ -1,20 +1,16 @@
-// Node has no locks. The name of a temporary file has the number of its process, and the launcher removes what exists when a signal ends that
-// (web/cli/cloudbake.mjs).
+// Node has no locks. The name of a temporary file has the number of its process, and the launcher removes what exists when a signal ends
+// that (web/cli/cloudbake.mjs).
 #include "io/file/temporary_file.h"
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string>
 
 #include "core/wasm/host.h"
+#include "io/file/system_file.h"
 #include "io/file/write_file.h"
 
 namespace cloudbake {
@@ -26,11 +22,7 @@ namespace fs = std::filesystem;
 constexpr int kMostTries = 100;
 
 // What the names of this machine's temporary files begin with, other than those of the native program.
-std::string namePrefix() {
-  std::array<char, 256> machine{};
-  cloudbake_machine_name(machine.data(), machine.size());
-  return ".cloudbake-" + hashBytes(std::string("a temporary file of Node on ") + machine.data()).substr(0, 8) + "-";
-}
+std::string namePrefix() { return ".cloudbake-" + hashBytes("a temporary file of Node on " + hostName()).substr(0, 8) + "-"; }
 
 std::string newName() {
   std::random_device draw;
@@ -47,10 +39,10 @@ bool isAbandoned(const std::string& name, const std::string& prefix) {
 
 }  // namespace
 
-TemporaryFile::TemporaryFile(const fs::path& folder, mode_t mode) {
+TemporaryFile::TemporaryFile(const fs::path& folder, uint32_t permissions) {
   for (int i = 0; i < kMostTries; ++i) {
     path_ = folder / newName();
-    file_.number = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    file_.number = openNew(path_, permissions);
     error_ = file_.number < 0 ? errno : 0;
     if (error_ == EEXIST) continue;
     if (error_ == 0) cloudbake_temporary(path_.c_str(), 1);
@@ -63,12 +55,12 @@ TemporaryFile::~TemporaryFile() { forget(); }
 void TemporaryFile::forget() {
   if (file_.number < 0) return;
   file_.close();
-  ::unlink(path_.c_str());
+  removeName(path_.c_str());
   cloudbake_temporary(path_.c_str(), 0);
 }
 
 int TemporaryFile::renameTo(const fs::path& target) {
-  if (::rename(path_.c_str(), target.c_str()) != 0) return errno;
+  if (const int failure = renameFile(path_, target); failure != 0) return failure;
   file_.close();
   cloudbake_temporary(path_.c_str(), 0);
   return 0;
@@ -78,7 +70,7 @@ void removeAbandonedFiles(const fs::path& folder) {
   const std::string prefix = namePrefix();
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (isAbandoned(entry->path().filename().string(), prefix)) ::unlink(entry->path().c_str());
+    if (isAbandoned(entry->path().filename().string(), prefix)) removeName(entry->path().c_str());
 }
 
 void removeTemporaryFiles() noexcept {}

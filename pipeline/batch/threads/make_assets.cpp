@@ -16,6 +16,8 @@ void makeAssets(std::span<const Job> jobs, uint64_t memory, std::atomic<int>& st
   });
 }
 
+void helpIfHelper(const Settings& /*settings*/, std::span<const Given> /*given*/) {}
+
 size_t assetsAtOnce(const Settings& /*settings*/) { return threadCount(); }
 
 }  // namespace cloudbake

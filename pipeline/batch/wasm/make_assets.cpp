@@ -9,7 +9,6 @@
 #include "core/wasm/host.h"
 #include "io/file/input_files.h"
 #include "io/file/wasm/helper.h"
-#include "pipeline/batch/wasm/help_batch.h"
 
 namespace cloudbake {
 
@@ -57,12 +56,8 @@ class Helpers {
   }
 
   void work() {
-    for (startWhatFits(); !running_.empty(); startWhatFits()) {
-      const std::optional<HelperMessage> message = receiveMessage();  // nothing, if a signal came
-      int none = 0;
-      if (const int signal = cloudbake_noted_signal(); signal != 0) stop_.compare_exchange_strong(none, signal);
-      if (message) take(*message);
-    }
+    for (startWhatFits(); !running_.empty(); startWhatFits())
+      if (const std::optional<HelperMessage> message = receiveMessage()) take(*message);
   }
 
  private:
@@ -73,6 +68,8 @@ class Helpers {
   };
 
   void startWhatFits() {
+    int none = 0;
+    if (const int signal = cloudbake_noted_signal(); signal != 0) stop_.compare_exchange_strong(none, signal);
     for (auto next = waiting_.begin(); next != waiting_.end() && stop_ == 0 && running_.size() < at_once_;) {
       const size_t job = *next;
       if (!running_.empty() && taken_ + jobs_[job].memory > memory_) {
@@ -86,7 +83,7 @@ class Helpers {
 
   void start(size_t job) {
     taken_ += jobs_[job].memory;
-    if (idle_.empty()) idle_.emplace_back(run_.settings.batch.helper_words);
+    if (idle_.empty()) idle_.emplace_back();
     Helper helper = std::move(idle_.back());
     idle_.pop_back();
     const AssetSlot slot = steps_.start(job);
@@ -137,7 +134,8 @@ size_t assetsAtOnce(const Settings& settings) {
   return size_t(std::max(1, settings.run.threads > 0 ? settings.run.threads : cloudbake_processors()));
 }
 
-void helpBatch(const Settings& settings, std::span<const Given> given) {
+void helpIfHelper(const Settings& settings, std::span<const Given> given) {
+  if (cloudbake_is_helper() == 0) return;
   const BatchPlan plan = planBatch(settings, given);
   FarListener listener;
   const AssetRun run{plan, settings, listener};

@@ -2,6 +2,9 @@
 
 #include <fcntl.h>
 
+#include <array>
+#include <tuple>
+
 #include "tests/io/io_helpers.h"
 
 namespace cloudbake {
@@ -54,6 +57,37 @@ TEST(FindFilesTest, LinksToFoldersEndNowhere) {
   EXPECT_EQ(tree.matching("**/*.obj"), Names{"x/a.obj"});
   std::set<fs::path> folders;
   EXPECT_EQ(filesBelow(tree.path, "", folders).size(), 1U);
+}
+
+// The answers are those of fnmatch(3) in glibc.
+TEST(FindFilesTest, PatternsMatchWholeNames) {
+  for (const auto& [pattern, name, matches] : std::to_array<std::tuple<const char*, const char*, bool>>({
+           {"", "", true},
+           {"", "a", false},
+           {"*", "", true},
+           {"*", "cloud.obj", true},
+           {"*.obj", "a.obj", true},
+           {"*.obj", "a.off", false},
+           {"a*b*c", "aXbYbZc", true},
+           {"a*b*c", "aXbYbZ", false},
+           {"?", "", false},
+           {"a?c", "abc", true},
+           {"[a-c]x", "bx", true},
+           {"[a-c]x", "dx", false},
+           {"[!a-c]x", "dx", true},
+           {"[^a-c]x", "bx", false},
+           {"[]x]", "]", true},
+           {"[a-]", "-", true},
+           {"[ab", "[ab", true},
+           {"\\*", "*", true},
+           {"\\*", "a", false},
+           {"_[0-9][0-9].png", "_07.png", true},
+           {"**", "ab", true},
+           {"a*", "b", false},
+           {"*a", "aXa", true},
+           {"[\xC3]", "\xC3", true},
+       }))
+    EXPECT_EQ(matchesPattern(pattern, name), matches) << pattern << " and " << name;
 }
 
 TEST(FindFilesTest, FilesBelowLeaveOutTheOutputFolder) {

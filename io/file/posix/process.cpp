@@ -1,8 +1,12 @@
+// Linux can limit the data of a process (RLIMIT_DATA, setrlimit(2)); sanitizers reserve terabytes, so it is not limited in their builds.
 #include "io/file/process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,32 +50,7 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
 
 }  // namespace
 
-void Descriptor::close() {
-  if (number >= 0) ::close(number);
-  number = -1;
-}
-
-int writeAll(int descriptor, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    bytes = bytes.subspan(size_t(written));
-  }
-  return 0;
-}
-
-int writeAll(int descriptor, std::string_view text) { return writeAll(descriptor, std::as_bytes(std::span(text.data(), text.size()))); }
-
-int readToEnd(int descriptor, std::string& bytes) {
-  std::array<char, 1 << 16> block{};
-  for (ssize_t count; (count = ::read(descriptor, block.data(), block.size())) != 0;) {
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return errno;
-    bytes.append(block.data(), size_t(count));
-  }
-  return 0;
-}
+std::filesystem::path thisProgram() { return "/proc/self/exe"; }
 
 void openPipe(Descriptor& to_read, Descriptor& to_write) {
   std::array<int, 2> ends{};
@@ -86,19 +65,6 @@ void openInMemory(Descriptor& file, std::string_view bytes) {
   const int error = file.number < 0 ? errno : writeAll(file.number, bytes);
   if (error != 0) fail("", "cannot create a file in memory", error);
   ::lseek(file.number, 0, SEEK_SET);
-}
-
-std::optional<std::filesystem::path> findProgram(std::string_view name) {
-  const char* path = std::getenv("PATH");
-  std::string_view rest = path ? path : "";
-  while (!rest.empty()) {
-    const size_t end = std::min(rest.find(':'), rest.size());
-    const std::filesystem::path program = std::filesystem::path(rest.substr(0, end)) / name;
-    std::error_code error;
-    if (program.is_absolute() && std::filesystem::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0) return program;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return std::nullopt;
 }
 
 pid_t startProcess(const std::filesystem::path& program, std::vector<std::string> words, std::span<const Inherited> inherited) {
@@ -128,11 +94,46 @@ bool isFault(int signal) {
   return std::find(kFaults.begin(), kFaults.end(), signal) != kFaults.end();
 }
 
-int waitForProcess(pid_t process) {
+std::string signalText(int signal) { return ::strsignal(signal); }
+
+ProcessEnd waitForProcess(pid_t process) {
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
-  return status;
+  return WIFSIGNALED(status) ? ProcessEnd{0, WTERMSIG(status)} : ProcessEnd{WEXITSTATUS(status), 0};
+}
+
+void killProcess(pid_t process) { ::kill(process, SIGKILL); }
+
+bool waitForBytes(int descriptor, std::chrono::milliseconds time) {
+  pollfd waiting{descriptor, POLLIN, 0};
+  return ::poll(&waiting, 1, int(time.count())) > 0;
+}
+
+void endWithParent() { ::prctl(PR_SET_PDEATHSIG, SIGKILL); }
+
+void limitThisProcess(uint64_t seconds, [[maybe_unused]] uint64_t memory) {
+  const auto limit = [](auto resource, uint64_t most) {
+    const rlimit value{most, most};
+    ::setrlimit(resource, &value);
+  };
+  limit(RLIMIT_CPU, seconds);
+  limit(RLIMIT_CORE, 0);
+#if !defined(__SANITIZE_ADDRESS__)
+  limit(RLIMIT_DATA, memory);
+#endif
+}
+
+ProcessUsage usageOfProcesses() {
+  const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
+  ProcessUsage all;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    ::getrusage(who, &usage);
+    all.processor_seconds += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    all.peak_memory = std::max(all.peak_memory, uint64_t(usage.ru_maxrss) * 1024);
+  }
+  return all;
 }
 
 }  // namespace cloudbake

@@ -2,6 +2,7 @@
 // have their own, and reserve terabytes. Inlined, one of a pair without the other looks like a mistake to GCC.
 #include "app/allocation.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -32,6 +33,11 @@
 #endif
 
 namespace cloudbake {
+
+void keepLargeBlocks() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+}
 
 // The stack of a thread counts as data from its first moment (RLIMIT_DATA, setrlimit(2)).
 void limitMemory([[maybe_unused]] uint64_t bytes) {

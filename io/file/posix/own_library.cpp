@@ -23,7 +23,7 @@ std::optional<fs::path> ownLibrary(std::string_view name) {
   if (::dladdr1(&here, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) == 0 || !map) return std::nullopt;
   const bool is_program = *map->l_name == '\0';
   if (!is_program && ::dlinfo(map, RTLD_DI_ORIGIN, origin.data()) != 0) return std::nullopt;
-  const fs::path folder = is_program ? fs::read_symlink(kThisProgram, error).parent_path() : fs::path(origin.data());
+  const fs::path folder = is_program ? fs::read_symlink(thisProgram(), error).parent_path() : fs::path(origin.data());
   // An installed program has its libraries in ../lib; a Python module has them above the folder of its package.
   for (const char* where : {"", is_program ? "../lib" : "../..", is_program ? "" : "../../.."}) {
     const fs::path library = (folder / where / name).lexically_normal();

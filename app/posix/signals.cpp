@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 
 #include "io/file/temporary_file.h"
@@ -11,6 +12,8 @@
 namespace cloudbake {
 
 namespace {
+
+constexpr std::array<WorkerSignal, 3> kSignals{{{SIGINT, SIGUSR1}, {SIGTERM, SIGUSR2}, {SIGHUP, SIGALRM}}};
 
 // What is written to the stand-in for standard output and standard error fails, and so does reading standard input.
 void openClosedStreams() {
@@ -41,5 +44,14 @@ void prepareForSignals() {
   std::signal(SIGXFSZ, SIG_IGN);
   for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM, SIGXCPU}) handleSignal(signal, endBySignal);
 }
+
+std::span<const WorkerSignal> workerSignals() { return kSignals; }
+
+void passSignalOn(pid_t worker, int signal) {
+  for (const auto& [original, to_worker] : kSignals)
+    if (signal == original) ::kill(worker, to_worker);
+}
+
+bool isBrokenPipe(int signal) { return signal == SIGPIPE; }
 
 }  // namespace cloudbake
