@@ -23,16 +23,16 @@ const compiled = WebAssembly.compile(readFileSync(program));
  * Starts a copy of the program, and calls `end` with how it ended: { code } or { crash }. `given` goes to its host (host.mjs); its `state`
  * becomes 1 at the end.
  */
-function start(words, given, end) {
+function start(given, end) {
   const worker = new Worker(new URL('process.mjs', import.meta.url), {
-    workerData: { words, columns, program, signals, ...given },
+    workerData: { columns, program, signals, ...given },
     transferList: given.parent ? [given.parent] : [],
     resourceLimits: { stackSizeMb: STACK_MEGABYTES },
   });
   const started = new Map();  // by this copy, by their numbers
   worker.on('message', message => {
     if (message.temporary) temporary[message.exists ? 'set' : 'delete'](String(message.temporary), message.temporary);
-    if (message.start) started.set(message.number, start(message.start, message, () => {}));
+    if (message.start) started.set(message.start.number, start(message.start, () => {}));
     if (message.stop) started.get(message.stop)?.terminate();
     if (message.ended) end(message.ended), worker.terminate();
   });
@@ -68,7 +68,7 @@ for (const name of ['SIGHUP', 'SIGINT', 'SIGTERM'])
     process.kill(process.pid, name);
   });
 
-start(process.argv.slice(2), { bell }, ({ code, crash }) => {
+start({ words: process.argv.slice(2), bell }, ({ code, crash }) => {
   if (crash) {
     removeTemporaryFiles();
     process.stderr.write(`cloudbake: the program crashed (${crash}): report it with the input, or try the native program\n`);

@@ -1,7 +1,6 @@
 // The system calls of the program as functions of Node. Arguments are those of Linux on a machine of 32 bits; a result below 0 is an errno.
-import { constants, readdirSync, statSync } from 'node:fs';
 import * as fs from 'node:fs';
-import { availableParallelism, cpus, hostname, totalmem } from 'node:os';
+import * as os from 'node:os';
 import { basename, dirname, join } from 'node:path';
 import { isatty } from 'node:tty';
 import { MessageChannel, receiveMessageOnPort } from 'node:worker_threads';
@@ -10,6 +9,8 @@ const windows = process.platform === 'win32';
 const PAGE = 65536, MOST = 2 ** 32 - PAGE;  // bytes of memory
 const BROKEN_PIPE = 141;                    // the exit code
 const FIRST_FOLDER = 1 << 20;               // folders that are open have numbers from here
+const FIRST_VIRTUAL = 1 << 24;              // and so have pipes and memory
+const BYTES = 0, ENDED = 1, CRASHED = 2, PIPED = 3;  // kinds of messages
 
 // Flags of open(2) in musl, and what Node calls them.
 const O_DIRECTORY = 0o200000, O_APPEND = 0o2000;
@@ -20,6 +21,10 @@ const TIOCGWINSZ = 0x5413;
 const KINDS = [['isFile', 8], ['isDirectory', 4], ['isSymbolicLink', 10], ['isFIFO', 1], ['isCharacterDevice', 2], ['isBlockDevice', 6],
   ['isSocket', 12]];
 const EINVAL = 'EINVAL', sleeper = new Int32Array(new SharedArrayBuffer(4));
+
+// The signal by which Linux ends a process for what WebAssembly throws.
+const SIGNALS = [[/^it was ended/, 9], [/unreachable/, 4], [/^Aborted/, 6], [/divide|integer overflow/, 8]];
+const signalOf = crash => SIGNALS.find(([what]) => what.test(crash))?.[1] ?? 11;
 
 class CallError extends Error {
   constructor(code) {
@@ -32,27 +37,30 @@ export class Host {
   /** @type {() => Record<string, number>} */ errno = () => ({});
   /** @type {() => Uint8Array} */ bytes = () => new Uint8Array();
   memoryLimit = MOST;
-  #files = new Map();  // of descriptors: { at }, the place where is read and written; none of what has no places
-  #folders = new Map();
-  #columns;
-  #processes = new Map();  // by number: { port, bell, state }
-  #started = 0;
-  #seenSignal = 0;
+  #files = new Map();      // of descriptors: { at, path, lock }; `at` is the place where is read and written, null of what has no places
+  #folders = new Map();    // open ones: { path, entries, next }
+  #virtual = new Map();    // descriptors without a file: { memory, at }, { pipe } to read, { to } a pipe to write, {} the null device
+  #free = FIRST_VIRTUAL;
+  #processes = new Map();  // by number: { port, bell, state, end }; 0 is the one that started this one
+  #inbox = [];             // messages for cloudbake_receive: { from, kind, bytes }
+  #pipes = [];             // { chunks, writers }, the numbers of processes that may write
   #message = { kind: 0, bytes: new Uint8Array() };
+  #seenSignal = 0;
 
   /**
-   * What a process is given: `launcher` and, in a helper, `parent` are ports; a bell counts what was sent to it.
-   * @param {{ columns: number, program: string, signals: Int32Array, bell: Int32Array, parentBell?: Int32Array, parent?: MessagePort,
-   *   input?: Uint8Array, launcher: MessagePort }} given
+   * What a process is given: its command line, ports to the launcher and to the process that started it, which counts in `parentBell` what
+   * is sent to it, and the descriptors that it inherits. `signals` has the number of one that was noted, and whether any is.
+   * @param {{ words: string[], columns: number, program: string, signals: Int32Array, bell: Int32Array, launcher: MessagePort,
+   *   parentBell?: Int32Array, parent?: MessagePort, is_helper?: boolean, inherited?: [number, any][] }} given
    */
-  constructor({ columns, program, signals, bell, parentBell, parent, input, launcher }) {
-    this.#columns = columns;
-    Object.assign(this, { program, signals, bell, launcher, input });
+  constructor({ words, columns, program, signals, bell, launcher, parentBell, parent, is_helper = false, inherited = [] }) {
+    Object.assign(this, { words, columns, program, signals, bell, launcher, isHelper: is_helper });
     if (parent) this.#processes.set(0, { port: parent, bell: parentBell });
+    for (const [number, what] of inherited) this.#virtual.set(number, what);
     for (const [name, call] of Object.entries(calls))
-      this[name] = (...words) => {
+      this[name] = (...given) => {
         try {
-          return call.apply(this, words) ?? 0;
+          return call.apply(this, given) ?? 0;
         } catch (error) {
           const number = this.errno()[error.code];
           if (number === undefined) throw error;
@@ -76,11 +84,11 @@ export class Host {
   cloudbake_memory_limit() { return this.memoryLimit; }
   cloudbake_machine_memory() {
     const allowed = process.constrainedMemory?.() ?? 0;
-    return allowed > 0 ? Math.min(allowed, totalmem()) : totalmem();
+    return allowed > 0 ? Math.min(allowed, os.totalmem()) : os.totalmem();
   }
-  cloudbake_processors() { return availableParallelism?.() ?? cpus().length; }
+  cloudbake_processors() { return os.availableParallelism?.() ?? os.cpus().length; }
 
-  // --- Processes ---
+  // --- Signals, locks, temporary files ---
 
   cloudbake_process_number() { return process.pid; }
   cloudbake_is_running(number) {
@@ -92,32 +100,94 @@ export class Host {
     return 1;
   }
   cloudbake_machine_name(at, size) {
-    const name = Buffer.from(hostname()).subarray(0, size - 1);
+    const name = Buffer.from(os.hostname()).subarray(0, size - 1);
     this.bytesAt(at, size).fill(0).set(name);
   }
   cloudbake_temporary(path, exists) { this.launcher.postMessage({ temporary: this.textAt(path), exists: exists !== 0 }); }
   cloudbake_note_signals() { Atomics.store(this.signals, 1, 1); }
   cloudbake_noted_signal() { return Atomics.load(this.signals, 0); }
 
-  cloudbake_start(words) {
-    const begin = words >>> 0, bytes = this.bytes(), list = [];
-    for (let at = begin; bytes[at] !== 0;) {
+  // --- Processes ---
+
+  start(words, is_helper, inherited) {
+    const { port1, port2 } = new MessageChannel();
+    // The state becomes 1 when the thread has ended.
+    const number = this.#processes.size + 1, bell = new Int32Array(new SharedArrayBuffer(4)), state = new Int32Array(new SharedArrayBuffer(4));
+    this.#processes.set(number, { port: port1, bell, state, is_helper });
+    this.launcher.postMessage({ start: { words, number, is_helper, parent: port2, bell, parentBell: this.bell, state, inherited } }, [port2]);
+    return number;
+  }
+  // A copy of what a descriptor is here, for another process: an end of a pipe to write, or memory from its start.
+  forChild(source) {
+    const what = this.#virtual.get(source);
+    return what?.memory ? { memory: what.memory, at: 0 } : what?.writes === undefined ? {} : { to: what.writes };
+  }
+  cloudbake_start(words, pairs, count) {
+    const list = [], bytes = this.bytes(), inherited = new Map();
+    for (let at = words >>> 0; bytes[at] !== 0;) {
       const end = bytes.indexOf(0, at);
       list.push(Buffer.from(bytes.slice(at, end)).toString());
       at = end + 1;
     }
-    const { port1, port2 } = new MessageChannel();
-    // The state of a process: 0 it runs, 1 it has ended.
-    const number = ++this.#started, bell = new Int32Array(new SharedArrayBuffer(4)), state = new Int32Array(new SharedArrayBuffer(4));
-    this.#processes.set(number, { port: port1, bell, state });
-    this.launcher.postMessage({ start: list, number, parent: port2, bell, parentBell: this.bell, state, input: this.input }, [port2]);
+    if (this.#virtual.has(0)) inherited.set(0, this.forChild(0));
+    const view = this.view(), writes = [];
+    for (let i = 0; i < count; ++i) {
+      const [number, source] = [0, 4].map(offset => view.getInt32((pairs >>> 0) + 8 * i + offset, true));
+      const what = this.forChild(source);
+      inherited.set(number, what);
+      if (what.to !== undefined) writes.push(this.#pipes[what.to]);
+    }
+    const process_number = this.start(list, false, [...inherited]);
+    for (const { writers } of writes) writers.add(process_number);
+    return process_number;
+  }
+  cloudbake_start_helper() { return this.start(this.words, true, this.#virtual.has(0) ? [[0, this.forChild(0)]] : []); }
+  cloudbake_is_helper() { return Number(this.isHelper); }
+  cloudbake_stop(number) { this.launcher.postMessage({ stop: number }); }
+  cloudbake_wait(number, signal) {
+    const one = this.#processes.get(number);
+    while (!one.end) this.listen();
+    this.view().setInt32(signal >>> 0, one.end.crash === undefined ? 0 : signalOf(one.end.crash), true);
+    return one.end.code ?? 0;
+  }
+  cloudbake_send(number, at, size) { this.post(number, { kind: BYTES, bytes: this.bytes().slice(at >>> 0, (at >>> 0) + size) }); }
+  cloudbake_receive() {
+    while (this.#inbox.length === 0) {
+      const signal = Atomics.load(this.signals, 0);
+      if (signal !== this.#seenSignal) {
+        this.#seenSignal = signal;
+        return -1;
+      }
+      this.listen();
+    }
+    this.#message = this.#inbox.shift();
+    return this.#message.from;
+  }
+  cloudbake_message_kind() { return this.#message.kind; }
+  cloudbake_message_size() { return this.#message.bytes.length; }
+  cloudbake_take_message(at) { this.bytesAt(at, this.#message.bytes.length).set(this.#message.bytes); }
+
+  cloudbake_pipe(at) {
+    const pipe = { chunks: [], writers: new Set() }, id = this.#pipes.push(pipe) - 1, ends = [this.#free++, this.#free++];
+    this.#virtual.set(ends[0], { pipe });
+    this.#virtual.set(ends[1], { writes: id });
+    ends.forEach((end, i) => this.view().setInt32((at >>> 0) + 4 * i, end, true));
+  }
+  cloudbake_memory_file(at, size) {
+    const number = this.#free++;
+    this.#virtual.set(number, { memory: this.bytes().slice(at >>> 0, (at >>> 0) + size), at: 0 });
     return number;
   }
-  cloudbake_stop(number) {
-    this.launcher.postMessage({ stop: number });
-    this.#processes.delete(number);
+  cloudbake_wait_for_bytes(descriptor, milliseconds) {
+    const { pipe } = this.#virtual.get(descriptor), end = performance.now() + milliseconds;
+    while (pipe.chunks.length === 0 && pipe.writers.size > 0) {
+      const left = end - performance.now();
+      if (left <= 0) return 0;
+      this.listen(left);
+    }
+    return 1;
   }
-  cloudbake_send(number, at, size) { this.post(number, { kind: 0, bytes: this.bytes().slice(at >>> 0, (at >>> 0) + size) }); }
+
   post(number, message) {
     const to = this.#processes.get(number);
     if (!to) return;
@@ -125,33 +195,55 @@ export class Host {
     Atomics.add(to.bell, 0, 1);
     Atomics.notify(to.bell, 0);
   }
-  cloudbake_receive(milliseconds) {
-    const end = milliseconds < 0 ? Infinity : performance.now() + milliseconds;
-    for (;;) {
-      const rung = Atomics.load(this.bell, 0);
-      for (const [number, { port, state }] of this.#processes) {
-        const has_ended = state && Atomics.load(state, 0) === 1;
-        const received = receiveMessageOnPort(port);
-        if (received) {
-          this.#message = received.message;
-          return number;
-        }
-        if (!has_ended) continue;
-        this.#processes.delete(number);
-        this.#message = { kind: 2, bytes: Buffer.from('it ended without a word') };
-        return number;
-      }
-      const left = end - performance.now(), signal = Atomics.load(this.signals, 0);
-      if (left <= 0 || signal !== this.#seenSignal) {
-        this.#seenSignal = signal;
-        return -1;
-      }
-      Atomics.wait(this.bell, 0, rung, left);
-    }
+  /** Tells whoever waits for this process how it has ended: { code } or { crash }. */
+  tellEnd(ended) {
+    this.post(0, ended.crash === undefined ? { kind: ENDED, bytes: Buffer.from(String(ended.code)) }
+      : { kind: CRASHED, bytes: Buffer.from(ended.crash) });
+    this.launcher.postMessage({ ended });
   }
-  cloudbake_message_kind() { return this.#message.kind; }
-  cloudbake_message_size() { return this.#message.bytes.length; }
-  cloudbake_take_message(at) { this.bytesAt(at, this.#message.bytes.length).set(this.#message.bytes); }
+  // Takes the messages that are there, or waits for the next one; a signal wakes, too.
+  listen(milliseconds = Infinity) {
+    const rung = Atomics.load(this.bell, 0);
+    let took = false;
+    for (const [number, one] of this.#processes) {
+      if (one.end) continue;
+      const has_ended = one.state && Atomics.load(one.state, 0) === 1;
+      for (let received; (received = receiveMessageOnPort(one.port)); took = true) this.take(number, one, received.message);
+      if (has_ended && !one.end) this.take(number, one, { kind: CRASHED, bytes: Buffer.from('it was ended') }), took = true;
+    }
+    if (!took && Atomics.load(this.signals, 0) === this.#seenSignal) Atomics.wait(this.bell, 0, rung, milliseconds);
+  }
+  take(from, one, { kind, bytes, pipe }) {
+    if (kind === PIPED) return void this.#pipes[pipe].chunks.push(bytes);
+    if (kind !== BYTES) {
+      const text = Buffer.from(bytes).toString();
+      one.end = kind === ENDED ? { code: Number(text) } : { crash: text };
+      for (const { writers } of this.#pipes) writers.delete(from);
+    }
+    if (kind === BYTES || one.is_helper) this.#inbox.push({ from, kind, bytes });
+  }
+
+  readVirtual(what, buffer) {
+    if (what.memory) {
+      const part = what.memory.subarray(what.at, what.at + buffer.length);
+      buffer.set(part);
+      what.at += part.length;
+      return part.length;
+    }
+    if (!what.pipe) return 0;
+    const { chunks, writers } = what.pipe;
+    while (chunks.length === 0 && writers.size > 0) this.listen();
+    if (chunks.length === 0) return 0;
+    const [first] = chunks, part = first.subarray(0, buffer.length);
+    buffer.set(part);
+    if (part.length < first.length) chunks[0] = first.subarray(part.length);
+    else chunks.shift();
+    return part.length;
+  }
+  writeVirtual(what, buffer) {
+    if (what.to !== undefined) this.post(0, { kind: PIPED, pipe: what.to, bytes: buffer.slice() });
+    return buffer.length;
+  }
 
   // --- Arguments ---
 
@@ -201,9 +293,9 @@ export class Host {
   }
   open(path, flags, mode) {
     let given = 0;
-    for (const [flag, name] of OPEN_FLAGS) if (flags & flag) given |= constants[name] ?? 0;
+    for (const [flag, name] of OPEN_FLAGS) if (flags & flag) given |= fs.constants[name] ?? 0;
     if (flags & O_DIRECTORY) {
-      if (!statSync(path).isDirectory()) throw new CallError('ENOTDIR');
+      if (!fs.statSync(path).isDirectory()) throw new CallError('ENOTDIR');
       const number = FIRST_FOLDER + (this.folderCount = (this.folderCount ?? 0) + 1);
       this.#folders.set(number, { path: Buffer.from(path), entries: null, next: 0 });
       return number;
@@ -240,31 +332,34 @@ export class Host {
 
   // As by SIGPIPE: without a word, at once.
   endByPipe() {
-    this.launcher.postMessage({ ended: { code: BROKEN_PIPE } });
+    this.tellEnd({ code: BROKEN_PIPE });
     Atomics.wait(sleeper, 0, 0);
   }
 
-  columns() { return this.#columns; }
+  virtual(descriptor) { return this.#virtual.get(descriptor); }
+  copyVirtual(from, to) { this.#virtual.set(to, { ...this.#virtual.get(from) }); }
   folder(descriptor) { return this.#folders.get(descriptor); }
   unlock(descriptor) {
     const lock = this.#files.get(descriptor)?.lock;
     if (lock) fs.rmSync(lock, { force: true });
   }
-  forget(descriptor) { return this.#folders.delete(descriptor) || (this.#files.delete(descriptor), false); }
+  /** Whether there is no file of the system behind it. */
+  forget(descriptor) {
+    this.#files.delete(descriptor);
+    return this.#folders.delete(descriptor) || this.#virtual.delete(descriptor);
+  }
   fileAt(descriptor) { return this.#files.get(descriptor); }
 }
 
 // Functions whose errors become errnos. `this` is the host.
 const calls = {
-  __syscall_pipe() { throw new CallError('ENOSYS'); },
-  cloudbake_keep_input() { this.input = fs.readFileSync(0); },
   // A lock is a file beside the one that is locked, which has the machine and the number of the process in its name.
   cloudbake_lock(descriptor, alone) {
-    const { path } = this.fileAt(descriptor), name = path.toString(), machine = hostname().replace(/[^\w-]/g, '_');
+    const { path } = this.fileAt(descriptor), name = path.toString(), machine = os.hostname().replace(/[^\w-]/g, '_');
     const lock = `${name}.${machine}.${process.pid}.${alone ? 'alone' : 'shared'}`;
     fs.closeSync(fs.openSync(lock, 'w'));
     this.fileAt(descriptor).lock = lock;
-    for (const other of readdirSync(dirname(name))) {
+    for (const other of fs.readdirSync(dirname(name))) {
       const [, of_machine, number, kind] = other.match(/\.([\w-]+)\.(\d+)\.(alone|shared)$/) ?? [];
       if (!other.startsWith(`${basename(name)}.`) || !kind || (of_machine === machine && Number(number) === process.pid)) continue;
       if (of_machine === machine && !this.cloudbake_is_running(Number(number))) {
@@ -286,7 +381,7 @@ const calls = {
   __syscall_lstat64(path, at) { this.writeStat(at, fs.lstatSync(this.pathAt(path), { bigint: true })); },
   __syscall_fstat64(descriptor, at) {
     const folder = this.folder(descriptor);
-    this.writeStat(at, folder ? statSync(folder.path, { bigint: true }) : fs.fstatSync(descriptor, { bigint: true }));
+    this.writeStat(at, folder ? fs.statSync(folder.path, { bigint: true }) : fs.fstatSync(descriptor, { bigint: true }));
   },
   __syscall_fstatat64(folder, path, at, flags) {
     if (flags & AT_EMPTY_PATH && this.textAt(path).length === 0) return this.__syscall_fstat64(folder, at);
@@ -313,6 +408,11 @@ const calls = {
     this.bytesAt(at, size).set(target);
     return target.length;
   },
+  __syscall_dup3(from, to) {
+    if (!this.virtual(from)) throw new CallError(EINVAL);
+    this.copyVirtual(from, to);
+    return to;
+  },
   __syscall_ftruncate64(descriptor, length) { fs.ftruncateSync(descriptor, Number(length)); },
   __syscall_getcwd(at, size) {
     const folder = Buffer.from(windows ? `/${process.cwd().replaceAll('\\', '/')}\0` : `${process.cwd()}\0`);
@@ -324,7 +424,7 @@ const calls = {
     const folder = this.folder(descriptor);
     if (!folder) throw new CallError('ENOTDIR');
     folder.entries ??= ['.', '..'].map(name => ({ name: Buffer.from(name), isDirectory: () => true }))
-      .concat(readdirSync(folder.path, { withFileTypes: true, encoding: 'buffer' }));
+      .concat(fs.readdirSync(folder.path, { withFileTypes: true, encoding: 'buffer' }));
     const RECORD = 280, view = this.view();
     let place = at >>> 0;
     const end = place + size;
@@ -345,7 +445,7 @@ const calls = {
   __syscall_ioctl(descriptor, request, rest) {
     if (request !== TIOCGWINSZ || !isatty(descriptor)) throw new CallError('ENOTTY');
     const view = this.view(), at = this.argument(rest) >>> 0;
-    for (const [offset, value] of [[0, 0], [2, this.columns()], [4, 0], [6, 0]]) view.setUint16(at + offset, value, true);
+    for (const [offset, value] of [[0, 0], [2, this.columns], [4, 0], [6, 0]]) view.setUint16(at + offset, value, true);
   },
   fd_close(descriptor) {
     this.unlock(descriptor);
@@ -353,12 +453,8 @@ const calls = {
   },
   fd_read(descriptor, list, count, done) {
     const all = this.forBuffers(list, count, buffer => {
-      if (descriptor === 0 && this.input) {
-        const part = this.input.subarray(this.inputAt ?? 0, (this.inputAt ?? 0) + buffer.length);
-        buffer.set(part);
-        this.inputAt = (this.inputAt ?? 0) + part.length;
-        return part.length;
-      }
+      const what = this.virtual(descriptor);
+      if (what) return this.readVirtual(what, buffer);
       const read = this.waiting(() => fs.readSync(descriptor, buffer, 0, buffer.length, this.placeOf(descriptor)));
       this.move(descriptor, read);
       return read;
@@ -367,6 +463,8 @@ const calls = {
   },
   fd_write(descriptor, list, count, done) {
     const all = this.forBuffers(list, count, buffer => {
+      const what = this.virtual(descriptor);
+      if (what) return this.writeVirtual(what, buffer);
       const written = this.waiting(() => fs.writeSync(descriptor, buffer, 0, buffer.length, this.placeOf(descriptor)));
       this.move(descriptor, written);
       return written;
@@ -374,11 +472,11 @@ const calls = {
     this.view().setUint32(done >>> 0, all, true);
   },
   fd_seek(descriptor, offset, whence, at) {
-    const folder = this.folder(descriptor), file = this.fileAt(descriptor);
+    const folder = this.folder(descriptor), what = this.virtual(descriptor), file = what?.memory ? what : this.fileAt(descriptor);
     if (folder) {
       if (offset === 0n && whence === 0) folder.next = 0, folder.entries = null;
     } else if (file && file.at !== null) {
-      const from = whence === 0 ? 0 : whence === 1 ? file.at : fs.fstatSync(descriptor).size;
+      const from = whence === 0 ? 0 : whence === 1 ? file.at : what ? what.memory.length : fs.fstatSync(descriptor).size;
       if (from + Number(offset) < 0) throw new CallError(EINVAL);
       file.at = from + Number(offset);
     } else {
@@ -400,7 +498,7 @@ const calls = {
   },
   // 2: a character device, 3: a folder, 4: a file
   fd_fdstat_get(descriptor, at) {
-    const kind = this.folder(descriptor) ? 3 : isatty(descriptor) ? 2 : 4;
+    const kind = this.folder(descriptor) ? 3 : !this.virtual(descriptor) && isatty(descriptor) ? 2 : 4;
     this.bytesAt(at, 24).fill(0);
     this.view().setUint8(at >>> 0, kind);
   },

@@ -31,7 +31,5 @@ async function run(module, host) {
 
 parentPort.once('message', async module => {
   const host = new Host({ ...workerData, launcher: parentPort });
-  const ended = await run(module, host);
-  host.post(0, ended.crash ? { kind: 2, bytes: Buffer.from(ended.crash) } : { kind: 1, bytes: Buffer.from(String(ended.code)) });
-  parentPort.postMessage({ ended });
+  host.tellEnd(await run(module, host));
 });
