@@ -141,7 +141,11 @@ export class Host {
     for (const { writers } of writes) writers.add(process_number);
     return process_number;
   }
-  cloudbake_start_helper() { return this.start(this.words, true, this.#virtual.has(0) ? [[0, this.forChild(0)]] : []); }
+  // It reads what this copy was given: standard input, and the orders of a worker.
+  cloudbake_start_helper() {
+    const given = [...this.#virtual.keys()].filter(number => this.#virtual.get(number).memory);
+    return this.start(this.words, true, given.map(number => [number, this.forChild(number)]));
+  }
   cloudbake_is_helper() { return Number(this.isHelper); }
   cloudbake_stop(number) { this.launcher.postMessage({ stop: number }); }
   cloudbake_wait(number, signal) {
@@ -284,6 +288,7 @@ export class Host {
   // Where is read or written; null leaves it to the system.
   placeOf(descriptor) {
     if (this.#folders.has(descriptor)) throw new CallError('EISDIR');
+    if (descriptor > 2 && !this.#files.has(descriptor)) throw new CallError('EBADF');  // it may be one of Node's own
     return this.#files.get(descriptor)?.at ?? null;
   }
   move(descriptor, count) {
