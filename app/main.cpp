@@ -350,8 +350,6 @@ int runMain(int argc, char** argv) {
   for (const CommandSpec& command : kCommands) {
     if (!app.got_subcommand(command.name)) continue;
     line.command = command.bit;
-    for (std::filesystem::path* path : {&line.input, &line.output}) *path = pathForSystem(*path);
-    for (std::filesystem::path& path : line.inputs) path = pathForSystem(path);
     code = runCommand(command, line);
   }
   return int(flushOutput(code, jsonFileIn(line.words)));

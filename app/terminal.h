@@ -2,15 +2,11 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 
 namespace cloudbake {
 
 /// For the beginning of main: the words of the command line are UTF-8 afterwards, and what is printed reaches the terminal as it is.
 void prepareTerminal(int& argc, char**& argv);
-
-/// A path of the command line in the form in which the system takes it, however long it is and however long what lies in it.
-std::filesystem::path pathForSystem(const std::filesystem::path& path);
 
 /// Whether standard error is a terminal that understands control sequences.
 bool isTerminal();

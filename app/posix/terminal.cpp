@@ -10,8 +10,6 @@ namespace cloudbake {
 
 void prepareTerminal(int&, char**&) {}
 
-std::filesystem::path pathForSystem(const std::filesystem::path& path) { return path; }
-
 bool isTerminal() {
   const char* kind = std::getenv("TERM");
   return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";

@@ -31,10 +31,6 @@ void prepareTerminal(int& argc, char**& argv) {
   _fmode = _O_BINARY;
 }
 
-std::filesystem::path pathForSystem(const std::filesystem::path& path) {
-  return path.empty() ? path : std::filesystem::path(longPath(path));
-}
-
 bool isTerminal() {
   const HANDLE console = ::GetStdHandle(STD_ERROR_HANDLE);
   DWORD mode = 0;
