@@ -31,6 +31,12 @@ class ThreadLimit {
 
 inline void throwIfLoopsStop() {}
 
+class LoopStop {
+ public:
+  bool isRequested() const { return false; }
+  static const LoopStop* current() { return nullptr; }
+};
+
 class LoopProgress {
  public:
   struct Part {

@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -384,6 +385,23 @@ VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const 
   return volume;
 }
 
+namespace {
+
+// A VDB says how much memory its grid takes. It is that of a program of 64 bits on every system: 8 bytes for each child of a node, and for
+// a leaf its values, its mask and 32 bytes (tools::memUsage in openvdb/tools/Count.h).
+void putMemory(const vdb::FloatTree& tree, std::string& bytes) {
+  constexpr std::string_view kBefore("file_mem_bytes\5\0\0\0int64\10\0\0\0", 14 + 4 + 5 + 4);
+  const size_t found = bytes.find(kBefore);
+  if (found == bytes.npos) return;
+  constexpr uint64_t kTree = 1232 + 72;  // the tree and its root
+  const auto of_node = [](uint64_t values) { return values * 8 + values / 4 + sizeof(vdb::Coord); };
+  const std::vector<vdb::Index32> nodes = tree.nodeCount();
+  const uint64_t memory = kTree + nodes[2] * of_node(1 << 15) + nodes[1] * of_node(1 << 12) + nodes[0] * uint64_t(512 * 4 + 512 / 8 + 32);
+  std::memcpy(bytes.data() + found + kBefore.size(), &memory, sizeof memory);
+}
+
+}  // namespace
+
 std::string encodeVdb(const LevelSet& level_set) {
   initializeVdb();
   const GridFrame& frame = level_set.frame;
@@ -409,6 +427,7 @@ std::string encodeVdb(const LevelSet& level_set) {
   // content, so that equal level sets give equal bytes.
   constexpr size_t kUuidAt = 8 + 3 * 4 + 1;
   std::string bytes = out.str();
+  if (sizeof(void*) != 8) putMemory(grid->tree(), bytes);
   bytes.replace(kUuidAt, 36, 36, '0');
   const std::string hash = hashBytes(bytes);
   const std::string uuid =

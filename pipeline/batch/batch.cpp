@@ -15,7 +15,7 @@
 #include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
-#include "pipeline/batch/schedule.h"
+#include "pipeline/batch/make_assets.h"
 #include "pipeline/batch/thumbnail.h"
 #include "pipeline/fields/stopwatch.h"
 #include "pipeline/options/run_files.h"
@@ -197,7 +197,7 @@ BatchReport reportOf(const Settings& settings, const BatchPlan& plan) {
   report.output = settings.output.file.string();
   report.shard = settings.batch.shard;
   report.shards = settings.batch.shards;
-  report.threads = int(threadCount());
+  report.threads = int(assetsAtOnce(settings));
   return report;
 }
 
@@ -248,6 +248,7 @@ Work planWork(const Settings& settings, std::span<const Given> given) {
 }  // namespace
 
 BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, std::atomic<int>& stop, BatchListener& listener) {
+  helpIfHelper(settings, given);
   const BatchSettings& batch = settings.batch;
   const Stopwatch watch;
   const double processor_seconds_before = usageOfProcesses().processor_seconds;

@@ -19,7 +19,7 @@
 #include "io/report/report.h"
 #include "pipeline/asset/asset.h"
 #include "pipeline/asset/levels.h"
-#include "pipeline/batch/schedule.h"
+#include "pipeline/batch/make_assets.h"
 #include "pipeline/measure/oracle.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/options/run_files.h"
@@ -34,13 +34,6 @@ constexpr uint64_t kProgramMemory = 50'000'000;  // of the program and its libra
 constexpr uint64_t kSlack = 256'000'000;         // of memory beyond an asset's plan
 constexpr uint64_t kAllMemory = 1ULL << 60;      // of a job that nothing may run beside
 constexpr int kStages = 6;                       // stages of a grown cloud and of a sculpt, as Stopwatch counts them
-
-// What the assets of one run share.
-struct Run {
-  const BatchPlan& plan;
-  const Settings& settings;
-  BatchListener& listener;
-};
 
 size_t truthVertices(const Settings& of_run) { return of_run.judge.truth_vertices.value_or(kTruthVertices); }
 
@@ -67,7 +60,7 @@ BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const 
 }
 
 // Grows or reads an asset, bakes it within this memory, and measures it if there are bounds. Returns what is to be written.
-AssetBytes bake(const PlannedAsset& asset, uint64_t memory, Run& run, AssetRecord& record) {
+AssetBytes bake(const PlannedAsset& asset, uint64_t memory, const AssetRun& run, AssetRecord& record) {
   BakeReport report;
   Stopwatch watch([&](const std::string& stage) { run.listener.stage(asset.name, stage); });
   const bool grown = isGrown(asset.from.kind);
@@ -102,12 +95,16 @@ void fail(AssetRecord& record, ExitCode code, const std::string& what) {
   record.error = what;
 }
 
+void failByFault(const std::string& source, const std::string& fault, AssetRecord& record) {
+  fail(record, ExitCode::kInternal,
+       source + ": it crashed the program (" + fault + "); please report it, and export it again or leave it out");
+}
+
 // A signal from outside is no fault of the asset.
 void failByCrash(const std::string& source, int signal, AssetRecord& record) {
   const std::string name = " (" + signalText(signal) + ")";
   if (isFault(signal))
-    fail(record, ExitCode::kInternal,
-         source + ": it crashed the program" + name + "; please report it, and export it again or leave it out");
+    failByFault(source, ::strsignal(signal), record);
   else
     fail(record, ExitCode::kSystem,
          source + ": the program was killed while this was baked" + name +
@@ -141,7 +138,7 @@ void tellOfStaleLevels(const std::filesystem::path& output, const std::string& n
 }
 
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
-void make(const PlannedAsset& planned, uint64_t memory, Run& run, AssetInputs& inputs, AssetRecord& record) {
+void make(const PlannedAsset& planned, uint64_t memory, const AssetRun& run, AssetInputs& inputs, AssetRecord& record) {
   refuseForeignOutputs(planned, run.settings);
   InputFiles files(planned.from.read.read_file);
   PlannedAsset asset = planned;
@@ -182,29 +179,11 @@ void make(const PlannedAsset& planned, uint64_t memory, Run& run, AssetInputs& i
   writeOutput(run.settings.output.file, record, bytes);
 }
 
-// Whether it is done, well or not. It is not if it needs more memory than these bytes, and may have more.
-bool makeOrFail(const PlannedAsset& asset, uint64_t memory, bool may_have_more, Run& run, AssetInputs& inputs, AssetRecord& record) {
-  const Stopwatch watch;
-  try {
-    namingFile(asset.source,
-               [&] { inStage("this asset", "use fewer --voxels, or a smaller input", [&] { make(asset, memory, run, inputs, record); }); });
-  } catch (const MemoryError& error) {
-    if (may_have_more) return false;
-    fail(record, error.code, error.what());
-  } catch (const Error& error) {
-    fail(record, error.code, error.what());
-  } catch (const std::filesystem::filesystem_error& error) {
-    fail(record, ExitCode::kSystem, error.path1().string() + ": " + error.code().message());
-  } catch (const std::exception& error) {
-    fail(record, ExitCode::kInternal, asset.source + ": internal error: " + error.what());
-  }
-  record.seconds = watch.elapsed();
-  return true;
-}
-
 // The memory of each job: what its plan says and as much again, because sizes of files say little about what is in them, but no more than
-// its part of all memory if every thread had a job, unless its plan is larger.
-uint64_t shareOf(uint64_t planned, uint64_t all) { return std::max(planned, std::min(2 * planned + kSlack, all / threadCount())); }
+// its part of all memory if as many ran as can, unless its plan is larger.
+uint64_t shareOf(uint64_t planned, uint64_t all, size_t at_once) {
+  return std::max(planned, std::min(2 * planned + kSlack, all / at_once));
+}
 
 void judgeBounds(AssetRecord& record, const ErrorBounds& bounds) {
   if (!record.figures || record.state == AssetState::kFailed) return;
@@ -261,6 +240,26 @@ std::string warningsOf(const std::vector<AssetRecord>& records, const BatchOrder
 
 }  // namespace
 
+bool makeAsset(const PlannedAsset& asset, uint64_t memory, bool may_have_more, const AssetRun& run, AssetInputs& inputs,
+               AssetRecord& record) {
+  const Stopwatch watch;
+  try {
+    namingFile(asset.source,
+               [&] { inStage("this asset", "use fewer --voxels, or a smaller input", [&] { make(asset, memory, run, inputs, record); }); });
+  } catch (const MemoryError& error) {
+    if (may_have_more) return false;
+    fail(record, error.code, error.what());
+  } catch (const Error& error) {
+    fail(record, error.code, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail(record, ExitCode::kSystem, error.path1().string() + ": " + error.code().message());
+  } catch (const std::exception& error) {
+    fail(record, ExitCode::kInternal, asset.source + ": internal error: " + error.what());
+  }
+  record.seconds = watch.elapsed();
+  return true;
+}
+
 std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, const std::vector<AssetInputs>& inputs,
                                      const Settings& settings) {
   std::vector<AssetRecord> records(assets.size());
@@ -305,32 +304,40 @@ void runAssets(const std::vector<PlannedAsset>& assets, std::vector<AssetInputs>
       continue;
     }
     stale.push_back(i);
-    jobs.push_back({assets[i].cost_seconds, orders.alone.contains(assets[i].name) ? kAllMemory : shareOf(assets[i].memory, memory)});
+    jobs.push_back({assets[i].cost_seconds,
+                    orders.alone.contains(assets[i].name) ? kAllMemory : shareOf(assets[i].memory, memory, assetsAtOnce(settings))});
     total_cost += assets[i].cost_seconds;
   }
-  Run run{plan, settings, listener};
+  const AssetRun run{plan, settings, listener};
   listener.begin(stale.size(), total_cost);
   std::vector<std::atomic<bool>> postponed(jobs.size());
-  const auto runJob = [&](size_t job) {
+  const auto end = [&](size_t job, const std::string& crash) {
     const PlannedAsset& asset = assets[stale[job]];
     AssetRecord& record = records[stale[job]];
-    listener.start(asset.name, kStages);
-    postponed[job] = !makeOrFail(asset, std::min(jobs[job].memory, memory), jobs[job].memory < memory, run, inputs[stale[job]], record);
-    if (postponed[job]) return listener.postpone(asset.name);
+    if (!crash.empty()) failByFault(asset.source, crash, record);
     judgeBounds(record, settings.judge.bounds);
     int none = 0;
     if (record.state == AssetState::kFailed && settings.batch.fail_fast) stop.compare_exchange_strong(none, -1);
     listener.finish(asset.name, asset.cost_seconds, lineOf(record));
     listener.tell(failureLine(record));
   };
-  runJobs(jobs, memory, stop, runJob);
+  const auto postpone = [&](size_t job) {
+    postponed[job] = true;
+    listener.postpone(assets[stale[job]].name);
+  };
+  const auto start = [&](size_t job) {
+    listener.start(assets[stale[job]].name, kStages);
+    return AssetSlot{assets[stale[job]], inputs[stale[job]], records[stale[job]]};
+  };
+  makeAssets(jobs, memory, stop, run, {start, postpone, end});
 
   // What needed more than its share may have all of it, one after the other.
-  for (size_t job = 0; job < jobs.size() && stop == 0; ++job) {
-    if (!postponed[job]) continue;
-    jobs[job].memory = kAllMemory;
-    runJob(job);
-  }
+  std::vector<size_t> again;
+  for (size_t job = 0; job < jobs.size(); ++job)
+    if (postponed[job]) again.push_back(job), jobs[job].memory = kAllMemory;
+  for (const size_t job : again)
+    makeAssets({&jobs[job], 1}, memory, stop, run,
+               {[&](size_t) { return start(job); }, [](size_t) {}, [&](size_t, const std::string& crash) { end(job, crash); }});
   listener.tell(warningsOf(records, settings.batch.orders));
 }
 

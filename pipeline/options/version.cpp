@@ -1,7 +1,9 @@
 // CMakeLists.txt passes the versions that it found, so that no heavy header has to be included for them.
 #include "pipeline/options/version.h"
 
+#ifndef __EMSCRIPTEN__
 #include <tbb/version.h>
+#endif
 
 #include "io/file/own_library.h"
 #include "io/file/process.h"
@@ -22,7 +24,9 @@ struct Library {
 std::string versionText() {
   const Library libraries[] = {
       {"OpenVDB", CLOUDBAKE_OPENVDB_VERSION, ""},
+#ifndef __EMSCRIPTEN__
       {"oneTBB", TBB_VERSION_STRING, TBB_runtime_version()},
+#endif
 #ifndef CLOUDBAKE_PORTABLE
       {"Embree", CLOUDBAKE_EMBREE_VERSION, ""},
 #endif
@@ -38,7 +42,9 @@ std::string versionText() {
       {"toml++", CLOUDBAKE_TOMLPLUSPLUS_VERSION, ""},
       {"{fmt}", CLOUDBAKE_FMT_VERSION, ""},
       {"CLI11", CLOUDBAKE_CLI11_VERSION, ""},
+#ifndef __EMSCRIPTEN__
       {"cpp-httplib", CLOUDBAKE_HTTPLIB_VERSION, ""},
+#endif
       {"xxHash", CLOUDBAKE_XXHASH_VERSION, ""},
   };
   std::string text = "cloudbake " CLOUDBAKE_VERSION;
@@ -48,6 +54,9 @@ std::string versionText() {
   }
 #ifdef CLOUDBAKE_PORTABLE
   text += "\nrays by cloudbake's own tree";
+#endif
+#ifdef __EMSCRIPTEN__
+  text += "\nin WebAssembly: one thread per asset, no view --serve and --watch";
 #endif
 #ifndef CLOUDBAKE_CGAL
   text += "\nwithout CGAL";

@@ -1,0 +1,36 @@
+# The whole program as WebAssembly for Node: the preset node. docs/web.md, "npx cloudbake", describes what it makes.
+set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
+set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+find_program(Python3_EXECUTABLE python3 REQUIRED NO_CMAKE_FIND_ROOT_PATH)
+add_compile_options(-fwasm-exceptions -msimd128)
+add_link_options(-fwasm-exceptions)
+# One thread. {fmt}: kinds of numbers that nothing prints, of which one needs more than 64 bits.
+add_compile_definitions(CLOUDBAKE_SERIAL FMT_USE_LONG_DOUBLE=0 FMT_USE_INT128=0)
+
+# Sources that are for systems with processes and sockets. What stands in for them is in X/wasm/.
+set(CLOUDBAKE_NOT_IN_WASM
+  "/(windows|threads)/|/core/posix/|/app/posix/(allocation|signals)|/io/file/posix/(own_library|process)|/io/file/temporary_file\\.cpp|/io/http/|/app/serve\\.cpp|/pipeline/batch/schedule")
+
+function(cloudbake_wasm_flags)
+  target_include_directories(cloudbake_flags SYSTEM BEFORE INTERFACE ${PROJECT_SOURCE_DIR}/web/libcxx)
+  target_compile_options(cloudbake_flags INTERFACE -Wno-c++2b-extensions -Wno-pedantic -Wno-unused-private-field)
+endfunction()
+
+# Highway's target for WebAssembly has no vectors of double: these sources take its portable one.
+set_source_files_properties(preview/backdrop/terrain_kernels.cpp preview/mesh_clouds/tone_kernels.cpp PROPERTIES
+  COMPILE_DEFINITIONS HWY_COMPILE_ONLY_EMU128)
+
+set(CLOUDBAKE_WASM_LINK -O2 CACHE STRING "How the program is linked: -O2 makes it a third smaller in three minutes, -O1 does not")
+
+# One memory of at most 4 GB, and the files of the system: web/cli/library.js. The launcher is beside what the linker makes.
+function(cloudbake_wasm_program target)
+  set(cli ${PROJECT_SOURCE_DIR}/web/cli)
+  set(launcher ${cli}/cloudbake.mjs ${cli}/host.mjs ${cli}/process.mjs)
+  # where Debian has acorn, which the linker needs
+  set_target_properties(${target} PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" SUFFIX ".cjs"
+                        LINK_DEPENDS "${cli}/library.js;${launcher}")
+  target_link_options(${target} PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createProgram -sENVIRONMENT=node -sFILESYSTEM=0 -sWASM_BIGINT=1
+    -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sINVOKE_RUN=0 -sEXIT_RUNTIME=1
+    -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js -sERROR_ON_UNDEFINED_SYMBOLS=0)
+  add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${launcher} ${PROJECT_BINARY_DIR} VERBATIM)
+endfunction()

@@ -1,0 +1,77 @@
+#!/usr/bin/env node
+// npx cloudbake: the command line of cloudbake as WebAssembly. The program runs in a thread, so that this one can take signals and start
+// further threads for it.
+import { readFileSync, unlinkSync } from 'node:fs';
+import { constants } from 'node:os';
+import { isatty } from 'node:tty';
+import { fileURLToPath } from 'node:url';
+import { setFlagsFromString } from 'node:v8';
+import { Worker } from 'node:worker_threads';
+
+const INTERNAL = 4, STACK_MEGABYTES = 16;
+const program = fileURLToPath(new URL('cloudbake.wasm', import.meta.url));
+const columns = isatty(2) ? process.stderr.columns : 0;
+const signals = new Int32Array(new SharedArrayBuffer(8));  // the one that was noted, and whether any is
+const temporary = new Map();                               // files, by their names
+// Most functions of the program are not needed in a run.
+setFlagsFromString('--wasm-lazy-compilation');
+setFlagsFromString('--wasm-lazy-validation');
+const bell = new Int32Array(new SharedArrayBuffer(4));
+const compiled = WebAssembly.compile(readFileSync(program));
+
+/**
+ * Starts a copy of the program, and calls `end` with how it ended: { code } or { crash }. `given` goes to its host (host.mjs); its `state`
+ * becomes 1 at the end.
+ */
+function start(given, end) {
+  const worker = new Worker(new URL('process.mjs', import.meta.url), {
+    workerData: { columns, program, signals, ...given },
+    transferList: given.parent ? [given.parent] : [],
+    resourceLimits: { stackSizeMb: STACK_MEGABYTES },
+  });
+  const started = new Map();  // by this copy, by their numbers
+  worker.on('message', message => {
+    if (message.temporary) temporary[message.exists ? 'set' : 'delete'](String(message.temporary), message.temporary);
+    if (message.start) started.set(message.start.number, start(message.start, () => {}));
+    if (message.stop) started.get(message.stop)?.terminate();
+    if (message.ended) end(message.ended), worker.terminate();
+  });
+  worker.on('error', error => end({ crash: error.message }));
+  worker.on('exit', () => {
+    for (const one of started.values()) one.terminate();
+    if (given.state) Atomics.store(given.state, 0, 1), ring(given.parentBell);
+    end({ crash: 'its thread ended' });
+  });
+  compiled.then(module => worker.postMessage(module));
+  return worker;
+}
+
+/** Wakes the copy of the program that waits at this bell. */
+function ring(its_bell) {
+  Atomics.add(its_bell, 0, 1);
+  Atomics.notify(its_bell, 0);
+}
+
+function removeTemporaryFiles() {
+  for (const path of temporary.values()) try {
+    unlinkSync(path);
+  } catch {  // it has gone
+  }
+}
+
+for (const name of ['SIGHUP', 'SIGINT', 'SIGTERM'])
+  process.on(name, () => {
+    const number = constants.signals[name];
+    if (Atomics.load(signals, 1) === 1 && Atomics.compareExchange(signals, 0, 0, number) === 0) return ring(bell);
+    removeTemporaryFiles();
+    process.removeAllListeners(name);
+    process.kill(process.pid, name);
+  });
+
+start({ words: process.argv.slice(2), bell }, ({ code, crash }) => {
+  if (crash) {
+    removeTemporaryFiles();
+    process.stderr.write(`cloudbake: the program crashed (${crash}): report it with the input, or try the native program\n`);
+  }
+  process.exit(crash ? INTERNAL : code);
+});
