@@ -34,3 +34,21 @@ function(cloudbake_wasm_program target)
     -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js -sERROR_ON_UNDEFINED_SYMBOLS=0)
   add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${launcher} ${PROJECT_BINARY_DIR} VERBATIM)
 endfunction()
+
+# The module of the page that bakes, with the whole program in it, which the page reads from a file beside it when it needs that.
+function(cloudbake_wasm_page)
+  set(web ${PROJECT_SOURCE_DIR}/web)
+  add_executable(whole EXCLUDE_FROM_ALL ${web}/module.cpp)
+  target_link_libraries(whole PRIVATE cloudbake_pipeline)
+  target_compile_definitions(whole PRIVATE CLOUDBAKE_WHOLE)
+  set_target_properties(whole PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" LINK_DEPENDS ${web}/page/library.js)
+  target_link_options(whole PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createEngine -sENVIRONMENT=web,worker
+    -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sFILESYSTEM=1
+    -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString --js-library ${web}/page/library.js)
+  add_custom_command(
+    OUTPUT ${PROJECT_BINARY_DIR}/cloudbake_whole.js
+    COMMAND ${Python3_EXECUTABLE} ${web}/compose whole ${PROJECT_BINARY_DIR} ${PROJECT_BINARY_DIR}/cloudbake_whole.js
+    DEPENDS whole ${web}/compose ${web}/cloudbake.js
+    VERBATIM)
+  add_custom_target(page_whole DEPENDS ${PROJECT_BINARY_DIR}/cloudbake_whole.js)
+endfunction()
