@@ -43,7 +43,7 @@ function(cloudbake_wasm_page)
   target_compile_definitions(whole PRIVATE CLOUDBAKE_WHOLE)
   set_target_properties(whole PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" LINK_DEPENDS ${web}/page/library.js)
   target_link_options(whole PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createEngine -sENVIRONMENT=web,worker
-    -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sFILESYSTEM=1
+    -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sFILESYSTEM=1
     -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString --js-library ${web}/page/library.js)
   add_custom_command(
     OUTPUT ${PROJECT_BINARY_DIR}/cloudbake_whole.js
