@@ -54,16 +54,16 @@ await testPage(folder, async page => {
   await same(page, 'a closed sculpt', () => bake('bear.off'), 'bake', 'bear.off');
   await choose({ vertices: '1500' });
   await same(page, 'fewer vertices', () => bake('bear.off'), 'bake', 'bear.off', '--vertices', '1500');
-  await choose({ vertices: '', field: 'levelset', method: 'rays', rays: '60' });
-  await same(page, 'rays in a level set', () => bake('bull.obj'), 'bake', 'bull.obj', '--field', 'levelset', '--method', 'rays', '--rays', '60');
-  await choose({ field: '', method: '', rays: '' });
+  await choose({ vertices: '', field: 'levelset' });
+  await same(page, 'a level set', () => bake('bull.obj'), 'bake', 'bull.obj', '--field', 'levelset');
+  await choose({ field: '' });
 
   await page.evaluate(() => { for (const id of ['bake-panel', 'bake-grow']) document.getElementById(id).open = true; });
   await page.waitForSelector('#grow-options label');
   const sliders = await page.$$eval('#grow-options input[type=range]', all => all.map(({ id }) => id));
   demand(sliders.length >= 3, `a preset has sliders: ${sliders.join(', ')}`);
   await page.selectOption('#grow-preset', 'puffball');
-  await page.fill('#grow-vertices', '1500');
+  await page.evaluate(() => window.baker.grow.set('vertices', '1500'));
   await same(page, 'a preset', () => page.click('#grow-start'), 'grow', 'puffball', '--vertices', '1500');
   await page.fill('#grow-seed', '7');
   await same(page, 'with another seed', () => page.click('#grow-start'), 'grow', 'puffball', '--vertices', '1500', '--seed', '7');
