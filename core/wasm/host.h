@@ -32,9 +32,9 @@ void cloudbake_machine_name(char* name, size_t size);
 
 // Copies of the program in threads of Node. For the program they are processes.
 
-/// Starts a copy and returns its number. `words`: its command line without the program's name, each with a NUL behind it, and another NUL.
-/// `inherited`: pairs of a descriptor there and one here, or −1.
-int cloudbake_start(const char* words, const int* inherited, int count);
+/// Starts a copy and returns its number. `words`: its command line without the program's name, each word with a NUL behind it. `inherited`:
+/// pairs of a descriptor there and one here, or −1.
+int cloudbake_start(const char* words, int word_count, const int* inherited, int inherited_count);
 /// Ends it at once.
 void cloudbake_stop(int process);
 /// Waits for its end. Returns its exit code, and the signal that would have ended a process.

@@ -2,6 +2,8 @@
 // the version. docs/architecture.md, Difficult parts, says what this relies on.
 #include "io/sculpt/child_reader.h"
 
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <chrono>

@@ -16,7 +16,7 @@ const temporary = new Map();                               // files, by their na
 // Most functions of the program are not needed in a run.
 setFlagsFromString('--wasm-lazy-compilation');
 setFlagsFromString('--wasm-lazy-validation');
-const bell = new Int32Array(new SharedArrayBuffer(4));
+const bells = new Set();  // one for each copy of the program
 const compiled = WebAssembly.compile(readFileSync(program));
 
 /**
@@ -29,6 +29,7 @@ function start(given, end) {
     transferList: given.parent ? [given.parent] : [],
     resourceLimits: { stackSizeMb: STACK_MEGABYTES },
   });
+  bells.add(given.bell);
   const started = new Map();  // by this copy, by their numbers
   worker.on('message', message => {
     if (message.temporary) temporary[message.exists ? 'set' : 'delete'](String(message.temporary), message.temporary);
@@ -38,6 +39,7 @@ function start(given, end) {
   });
   worker.on('error', error => end({ crash: error.message }));
   worker.on('exit', () => {
+    bells.delete(given.bell);
     for (const one of started.values()) one.terminate();
     if (given.state) Atomics.store(given.state, 0, 1), ring(given.parentBell);
     end({ crash: 'its thread ended' });
@@ -62,13 +64,16 @@ function removeTemporaryFiles() {
 for (const name of ['SIGHUP', 'SIGINT', 'SIGTERM'])
   process.on(name, () => {
     const number = constants.signals[name];
-    if (Atomics.load(signals, 1) === 1 && Atomics.compareExchange(signals, 0, 0, number) === 0) return ring(bell);
+    if (Atomics.load(signals, 1) === 1 && Atomics.compareExchange(signals, 0, 0, number) === 0) return bells.forEach(ring);
     removeTemporaryFiles();
     process.removeAllListeners(name);
     process.kill(process.pid, name);
   });
 
-start({ words: process.argv.slice(2), bell }, ({ code, crash }) => {
+// On Windows the program sees C:\a\b as /C:/a/b.
+const asSeen = word => process.platform !== 'win32' ? word : word.replaceAll('\\', '/').replace(/(^|=)([A-Za-z]:\/)/, '$1/$2');
+
+start({ words: process.argv.slice(2).map(asSeen), bell: new Int32Array(new SharedArrayBuffer(4)) }, ({ code, crash }) => {
   if (crash) {
     removeTemporaryFiles();
     process.stderr.write(`cloudbake: the program crashed (${crash}): report it with the input, or try the native program\n`);

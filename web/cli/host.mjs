@@ -122,9 +122,9 @@ export class Host {
     const what = this.#virtual.get(source);
     return what?.memory ? { memory: what.memory, at: 0 } : what?.writes === undefined ? {} : { to: what.writes };
   }
-  cloudbake_start(words, pairs, count) {
+  cloudbake_start(words, word_count, pairs, count) {
     const list = [], bytes = this.bytes(), inherited = new Map();
-    for (let at = words >>> 0; bytes[at] !== 0;) {
+    for (let at = words >>> 0; list.length < word_count;) {
       const end = bytes.indexOf(0, at);
       list.push(Buffer.from(bytes.slice(at, end)).toString());
       at = end + 1;
@@ -141,7 +141,11 @@ export class Host {
     for (const { writers } of writes) writers.add(process_number);
     return process_number;
   }
-  cloudbake_start_helper() { return this.start(this.words, true, this.#virtual.has(0) ? [[0, this.forChild(0)]] : []); }
+  // It reads what this copy was given: standard input, and the orders of a worker.
+  cloudbake_start_helper() {
+    const given = [...this.#virtual.keys()].filter(number => this.#virtual.get(number).memory);
+    return this.start(this.words, true, given.map(number => [number, this.forChild(number)]));
+  }
   cloudbake_is_helper() { return Number(this.isHelper); }
   cloudbake_stop(number) { this.launcher.postMessage({ stop: number }); }
   cloudbake_wait(number, signal) {
@@ -153,12 +157,12 @@ export class Host {
   cloudbake_send(number, at, size) { this.post(number, { kind: BYTES, bytes: this.bytes().slice(at >>> 0, (at >>> 0) + size) }); }
   cloudbake_receive() {
     while (this.#inbox.length === 0) {
-      const signal = Atomics.load(this.signals, 0);
+      const rung = Atomics.load(this.bell, 0), signal = Atomics.load(this.signals, 0);
       if (signal !== this.#seenSignal) {
         this.#seenSignal = signal;
         return -1;
       }
-      this.listen();
+      this.listen(Infinity, rung);
     }
     this.#message = this.#inbox.shift();
     return this.#message.from;
@@ -201,9 +205,8 @@ export class Host {
       : { kind: CRASHED, bytes: Buffer.from(ended.crash) });
     this.launcher.postMessage({ ended });
   }
-  // Takes the messages that are there, or waits for the next one; a signal wakes, too.
-  listen(milliseconds = Infinity) {
-    const rung = Atomics.load(this.bell, 0);
+  // Takes the messages that are there, or waits until the bell rings after its count `rung`: for the next one, or for a signal.
+  listen(milliseconds = Infinity, rung = Atomics.load(this.bell, 0)) {
     let took = false;
     for (const [number, one] of this.#processes) {
       if (one.end) continue;
@@ -211,7 +214,7 @@ export class Host {
       for (let received; (received = receiveMessageOnPort(one.port)); took = true) this.take(number, one, received.message);
       if (has_ended && !one.end) this.take(number, one, { kind: CRASHED, bytes: Buffer.from('it was ended') }), took = true;
     }
-    if (!took && Atomics.load(this.signals, 0) === this.#seenSignal) Atomics.wait(this.bell, 0, rung, milliseconds);
+    if (!took) Atomics.wait(this.bell, 0, rung, milliseconds);
   }
   take(from, one, { kind, bytes, pipe }) {
     if (kind === PIPED) return void this.#pipes[pipe].chunks.push(bytes);
@@ -285,6 +288,7 @@ export class Host {
   // Where is read or written; null leaves it to the system.
   placeOf(descriptor) {
     if (this.#folders.has(descriptor)) throw new CallError('EISDIR');
+    if (descriptor > 2 && !this.#files.has(descriptor)) throw new CallError('EBADF');  // it may be one of Node's own
     return this.#files.get(descriptor)?.at ?? null;
   }
   move(descriptor, count) {

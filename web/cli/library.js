@@ -11,7 +11,7 @@ const calls = {
   cloudbake_is_helper: 0, cloudbake_is_running: 1, cloudbake_limit_memory: 1, cloudbake_lock: 2, cloudbake_machine_memory: 0,
   cloudbake_machine_name: 2, cloudbake_memory_file: 2, cloudbake_memory_limit: 0, cloudbake_message_kind: 0, cloudbake_message_size: 0,
   cloudbake_note_signals: 0, cloudbake_noted_signal: 0, cloudbake_pipe: 1, cloudbake_process_number: 0, cloudbake_processors: 0,
-  cloudbake_receive: 0, cloudbake_send: 3, cloudbake_start: 3, cloudbake_start_helper: 0, cloudbake_stop: 1, cloudbake_take_message: 1,
+  cloudbake_receive: 0, cloudbake_send: 3, cloudbake_start: 4, cloudbake_start_helper: 0, cloudbake_stop: 1, cloudbake_take_message: 1,
   cloudbake_temporary: 2, cloudbake_usage: 2, cloudbake_wait: 2, cloudbake_wait_for_bytes: 2,
 };
 const library = {

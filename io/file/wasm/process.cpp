@@ -30,7 +30,7 @@ pid_t startProcess(const std::filesystem::path& program, std::vector<std::string
   for (size_t i = 1; i < words.size(); ++i) text += words[i] + '\0';
   std::vector<int> pairs;
   for (const auto& [number, source] : inherited) pairs.insert(pairs.end(), {number, source});
-  return cloudbake_start(text.c_str(), pairs.data(), int(inherited.size()));
+  return cloudbake_start(text.data(), int(words.size()) - 1, pairs.data(), int(inherited.size()));
 }
 
 ProcessEnd waitForProcess(pid_t process) {
