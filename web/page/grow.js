@@ -42,7 +42,7 @@ export class GrowPanel {
     element('grow-options').replaceChildren(...shown.flatMap((option, i) => [
       ...option.group !== shown[i - 1]?.group ? [make('h2', { textContent: option.group })] : [],
       optionControl(option, '', value => this.set(option.name, value),
-        { prefix: 'grow', slides: true, initial: values[option.name] ?? option.fallback }),
+        { prefix: 'grow', slides: true, initial: values[option.name] ?? values[option.name.replaceAll('-', '_')] ?? option.fallback }),
     ]));
   }
 

@@ -14,8 +14,11 @@ export function optionControl({ name, label: text, unit, fallback, help, choices
   { prefix, slides = false, initial = fallback }) {
   const label = make('label', {});
   const is_number = ['whole', 'number'].includes(kind) && !words.length && !percent && !shape;
-  const is_slider = slides && is_number && Number.isFinite(low) && Number.isFinite(high) && initial !== '' && Number.isFinite(Number(initial))
-    && (kind === 'number' ? high <= 1000 : high - low <= MOST_STEPS);
+  // A slider goes as far as the option, or to three times what it begins with.
+  const begins = Number(initial), is_whole = kind === 'whole', least = Number.isFinite(low) ? low : Math.min(0, 3 * begins);
+  const most = Number.isFinite(high) && (is_whole || high <= 10 * Math.max(1, begins)) ? high : begins > 0 ? 3 * begins : 1;
+  const is_slider = slides && ['whole', 'number'].includes(kind) && !percent && !shape && initial !== '' && Number.isFinite(begins)
+    && (!is_whole || most - least <= MOST_STEPS);
   /** @type {any} */
   let input;
   if (!unit) {
@@ -25,9 +28,9 @@ export function optionControl({ name, label: text, unit, fallback, help, choices
     input.append(...['', ...choices].map(choice => new Option(choice || `${initial || 'none'} (default)`, choice)));
     input.value = value;
   } else if (is_slider) {
-    input = make('input', { type: 'range', min: low, max: high, step: kind === 'whole' ? 1 : 'any', value: value || initial });
+    input = make('input', { type: 'range', min: least, max: most, step: is_whole ? 1 : 'any', value: value || initial });
   } else {
-    const range = is_number ? { type: 'number', min: low ?? '', max: high ?? '', step: kind === 'whole' ? 1 : 'any' } : { type: 'text' };
+    const range = is_number ? { type: 'number', min: low ?? '', max: high ?? '', step: is_whole ? 1 : 'any' } : { type: 'text' };
     input = make('input', { ...range, placeholder: initial || 'none', value, spellcheck: false });
   }
   input.id = `${prefix}-${name}`;
@@ -37,7 +40,7 @@ export function optionControl({ name, label: text, unit, fallback, help, choices
   input.addEventListener('input', () => {
     // What is no number has no value in the browser: the bake refuses this text, where an empty one would be the default.
     let chosen = input.type === 'checkbox' ? String(input.checked || '') : input.validity.badInput ? 'no number' : input.value.trim();
-    if (is_slider && kind === 'number') chosen = String(Number(Number(chosen).toPrecision(3)));
+    if (is_slider && !is_whole) chosen = String(Number(Number(chosen).toPrecision(3)));
     if (is_slider && Number(chosen) === Number(initial)) chosen = '';
     if (shown) shown.textContent = chosen || initial;
     label.classList.toggle('set', chosen !== '');
