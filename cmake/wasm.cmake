@@ -41,10 +41,10 @@ function(cloudbake_wasm_page)
   add_executable(whole EXCLUDE_FROM_ALL ${web}/module.cpp)
   target_link_libraries(whole PRIVATE cloudbake_pipeline)
   target_compile_definitions(whole PRIVATE CLOUDBAKE_WHOLE)
-  set_target_properties(whole PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" LINK_DEPENDS ${web}/page/library.js)
+  set_target_properties(whole PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" LINK_DEPENDS ${web}/cli/page_library.js)
   target_link_options(whole PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createEngine -sENVIRONMENT=web,worker
     -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sFILESYSTEM=1
-    -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString --js-library ${web}/page/library.js)
+    -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString --js-library ${web}/cli/page_library.js)
   add_custom_command(
     OUTPUT ${PROJECT_BINARY_DIR}/cloudbake_whole.js
     COMMAND ${Python3_EXECUTABLE} ${web}/compose whole ${PROJECT_BINARY_DIR} ${PROJECT_BINARY_DIR}/cloudbake_whole.js
