@@ -27,7 +27,7 @@ export class GrowPanel {
     const { presets, options } = await this.read();
     this.presets = presets;
     this.options = options.filter(({ offered }) => offered);
-    element('grow-preset').append(...presets.map(({ name }) => new Option(name)));
+    element('grow-preset').append(...presets.map(({ name }) => make('option', { value: name, textContent: name })));
     this.choose('hero');
   }
 
