@@ -33,6 +33,14 @@ function listOf(choices, value, initial) {
   return list;
 }
 
+/** @param {OptionInfo} option @param {string} value @param {string} initial @param {object} ends @returns {any} */
+function inputOf(option, value, initial, ends) {
+  if (!option.unit) return make('input', { type: 'checkbox', checked: (value || initial) === 'true' });
+  if (option.choices.length) return listOf(option.choices, value, initial);
+  if (!ends) return fieldOf(option, value, initial);
+  return make('input', { type: 'range', ...ends, step: option.kind === 'whole' ? 1 : 'any', value: value || initial });
+}
+
 /** What was chosen in a control; empty is the default. @param {any} input @param {OptionInfo} option @param {string} initial */
 function chosenIn(input, { kind }, initial) {
   if (input.type === 'checkbox') return String(input.checked || '');
@@ -50,14 +58,8 @@ function chosenIn(input, { kind }, initial) {
  * @param {{ prefix: string, slides?: boolean, initial?: string }} more `initial`: what it is if it is not given
  */
 export function optionControl(option, value, choose, { prefix, slides = false, initial = option.fallback }) {
-  const { name, label: text, unit, help, choices } = option, label = make('label', {});
-  const ends = slides && unit && !choices.length ? sliderEnds(option, initial) : null;
-  /** @type {any} */
-  let input;
-  if (!unit) input = make('input', { type: 'checkbox', checked: (value || initial) === 'true' });
-  else if (choices.length) input = listOf(choices, value, initial);
-  else if (ends) input = make('input', { type: 'range', ...ends, step: option.kind === 'whole' ? 1 : 'any', value: value || initial });
-  else input = fieldOf(option, value, initial);
+  const { name, label: text, help } = option, label = make('label', {}), ends = slides ? sliderEnds(option, initial) : null;
+  const input = inputOf(option, value, initial, ends);
   input.id = `${prefix}-${name}`;
   input.ariaDescription = `${help} (--${name})`;
   const shown = ends ? make('output', { textContent: value || initial }) : null;
@@ -68,6 +70,8 @@ export function optionControl(option, value, choose, { prefix, slides = false, i
     label.classList.toggle('set', chosen !== '');
     choose(chosen);
   });
-  label.append(text || wordsOf(name), ...shown ? [shown] : [], input);
+  label.append(text || wordsOf(name));
+  if (shown) label.append(shown);
+  label.append(input);
   return label;
 }
