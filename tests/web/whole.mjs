@@ -76,13 +76,14 @@ await testPage(folder, async page => {
 
   // Without the file beside it, the page says what is missing.
   rmSync(file('cloudbake_whole.js'));
-  await page.goto('about:blank');
-  await page.goto(address);
-  await page.waitForSelector('html[data-baker="ready"]');
-  await bake('spider.fbx');
-  const { state, text } = await isOver(page, 1);
+  const alone = await page.context().newPage();  // whose errors nobody watches
+  await alone.goto(address);
+  await alone.waitForSelector('html[data-baker="ready"]');
+  const give = name => alone.setInputFiles('#bake-file-input', file(name));
+  await give('spider.fbx');
+  const { state, text } = await isOver(alone, 1);
   demand(state === 'failed' && text.includes('only the program `cloudbake` reads this .fbx')
     && text.endsWith('the file cloudbake_whole.js, with which this page can do it, too, is not beside the page'), `a missing file is named: ${text}`);
-  await bake('bear.off');
-  demand((await isOver(page, 2)).state === 'baked', 'and what the page can do, it does');
+  await give('bear.off');
+  demand((await isOver(alone, 2)).state === 'baked', 'and what the page can do, it does');
 }, { viewport: { width: 1000, height: 640 } });

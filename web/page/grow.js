@@ -38,11 +38,12 @@ export class GrowPanel {
     this.values = {};
     element('grow-preset').value = name;
     element('grow-about').textContent = about;
-    const shown = this.options.filter(({ common }) => common);
+    const initialOf = (/** @type {OptionInfo} */ option) => values[option.name] ?? values[option.name.replaceAll('-', '_')];
+    const shown = this.options.filter(option => option.common || initialOf(option) !== undefined);
     element('grow-options').replaceChildren(...shown.flatMap((option, i) => [
       ...option.group !== shown[i - 1]?.group ? [make('h2', { textContent: option.group })] : [],
       optionControl(option, '', value => this.set(option.name, value),
-        { prefix: 'grow', slides: true, initial: values[option.name] ?? values[option.name.replaceAll('-', '_')] ?? option.fallback }),
+        { prefix: 'grow', slides: true, initial: initialOf(option) ?? option.fallback }),
     ]));
   }
 
