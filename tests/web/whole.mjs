@@ -67,7 +67,7 @@ await testPage(folder, async page => {
   await same(page, 'a preset', () => page.click('#grow-start'), 'grow', 'puffball', '--vertices', '1500');
   await page.fill('#grow-seed', '7');
   await same(page, 'with another seed', () => page.click('#grow-start'), 'grow', 'puffball', '--vertices', '1500', '--seed', '7');
-  await page.$eval(`#${sliders[0]}`, slider => {
+  await page.$eval('#grow-generations', slider => {
     slider.value = slider.value === slider.max ? slider.min : slider.max;
     slider.dispatchEvent(new Event('input'));
   });

@@ -12,7 +12,7 @@ const wordsOf = (/** @type {string} */ name) => name[0].toUpperCase() + name.sli
 function sliderEnds({ kind, low, high, percent, shape }, initial) {
   const begins = Number(initial), is_whole = kind === 'whole';
   if (!['whole', 'number'].includes(kind) || percent || shape || initial === '' || !Number.isFinite(begins)) return null;
-  const least = Number.isFinite(low) ? low : Math.min(0, 3 * begins), beyond = begins > 0 ? 3 * begins : 1;
+  const least = Math.abs(low) < 1e6 ? low : Math.min(0, 3 * begins), beyond = begins > 0 ? 3 * begins : 1;
   const most = Number.isFinite(high) && (is_whole || high <= 10 * Math.max(1, begins)) ? high : beyond;
   return !is_whole || most - least <= MOST_STEPS ? { min: least, max: most } : null;
 }
