@@ -31,7 +31,7 @@ function(cloudbake_wasm_program target)
                         LINK_DEPENDS "${cli}/library.js;${launcher}")
   target_link_options(${target} PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createProgram -sENVIRONMENT=node -sFILESYSTEM=0 -sWASM_BIGINT=1
     -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sINVOKE_RUN=0 -sEXIT_RUNTIME=1
-    -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js -sERROR_ON_UNDEFINED_SYMBOLS=0)
+    -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js)
   add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${launcher} ${PROJECT_BINARY_DIR} VERBATIM)
 endfunction()
 
