@@ -311,6 +311,7 @@ int runMain(int argc, char** argv) {
   CLI::App app{"cloudbake bakes mesh clouds: where the cloud's bulk lies and how thick it is, four floats per vertex in UV channels.",
                "cloudbake"};
   app.set_version_flag("--version", versionText());
+  app.allow_windows_style_options(false);  // a path may begin with a slash
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
   line.child_program = thisProgram();

@@ -33,6 +33,25 @@ function(cloudbake_wasm_program target)
                         LINK_DEPENDS "${cli}/library.js;${launcher}")
   target_link_options(${target} PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createProgram -sENVIRONMENT=node
     -sFILESYSTEM=0 -sWASM_BIGINT=1 -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB
-    -Wl,--stack-first,--wrap=strerror -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js)
+    -Wl,--stack-first,--wrap=strerror -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0
+    -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js)
   add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${launcher} ${PROJECT_BINARY_DIR} VERBATIM)
+endfunction()
+
+# The module of the page that bakes, with the whole program in it, which the page reads from a file beside it when it needs that.
+function(cloudbake_wasm_page)
+  set(web ${PROJECT_SOURCE_DIR}/web)
+  add_executable(whole EXCLUDE_FROM_ALL ${web}/module.cpp)
+  target_link_libraries(whole PRIVATE cloudbake_pipeline)
+  target_compile_definitions(whole PRIVATE CLOUDBAKE_WHOLE)
+  set_target_properties(whole PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" LINK_DEPENDS ${web}/cli/page_library.js)
+  target_link_options(whole PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createEngine -sENVIRONMENT=web,worker
+    -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sFILESYSTEM=1
+    -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString --js-library ${web}/cli/page_library.js)
+  add_custom_command(
+    OUTPUT ${PROJECT_BINARY_DIR}/cloudbake_whole.js
+    COMMAND ${Python3_EXECUTABLE} ${web}/compose whole ${PROJECT_BINARY_DIR} ${PROJECT_BINARY_DIR}/cloudbake_whole.js
+    DEPENDS whole ${web}/compose ${web}/cloudbake.js
+    VERBATIM)
+  add_custom_target(page_whole DEPENDS ${PROJECT_BINARY_DIR}/cloudbake_whole.js)
 endfunction()

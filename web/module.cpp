@@ -13,9 +13,12 @@
 #include "core/error.h"
 #include "core/text/json.h"
 #include "core/text/markup.h"
+#include "core/text/numbers.h"
+#include "core/text/toml.h"
 #include "io/file/write_file.h"
 #include "io/report/report.h"
 #include "io/volume/spheres.h"
+#include "lsystem/recipe.h"
 #include "pipeline/library/cloud_light.h"
 #include "pipeline/library/cloudbake.h"
 #include "pipeline/options/option_json.h"
@@ -126,6 +129,11 @@ Json presetsCall(const Json&, Answer&) {
     source.input = preset.name;
     source.kind = SourceKind::kPreset;
     Json values = Json::object();
+    const toml::table recipe = parseTomlTable(preset.toml, preset.name);
+    for (const RecipeKey& key : recipeKeys()) {
+      const auto node = *key.table ? recipe[key.table][key.name] : recipe[key.name];
+      if (const auto number = node.value<double>(); number && *key.unit) values[key.name] = shortestText(*number);
+    }
     for (const Given& given : readGrownSource(source).given) values[given.option->name] = given.value;
     std::string_view about = preset.toml;
     about.remove_prefix(about.find_first_not_of("# "));

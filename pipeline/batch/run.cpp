@@ -104,7 +104,7 @@ void failByFault(const std::string& source, const std::string& fault, AssetRecor
 void failByCrash(const std::string& source, int signal, AssetRecord& record) {
   const std::string name = " (" + signalText(signal) + ")";
   if (isFault(signal))
-    failByFault(source, ::strsignal(signal), record);
+    failByFault(source, signalText(signal), record);
   else
     fail(record, ExitCode::kSystem,
          source + ": the program was killed while this was baked" + name +

@@ -27,7 +27,7 @@ export class GrowPanel {
     const { presets, options } = await this.read();
     this.presets = presets;
     this.options = options.filter(({ offered }) => offered);
-    element('grow-preset').append(...presets.map(({ name }) => new Option(name)));
+    element('grow-preset').append(...presets.map(({ name }) => make('option', { value: name, textContent: name })));
     this.choose('hero');
   }
 
@@ -38,11 +38,12 @@ export class GrowPanel {
     this.values = {};
     element('grow-preset').value = name;
     element('grow-about').textContent = about;
-    const shown = this.options.filter(({ common }) => common);
+    const initialOf = (/** @type {OptionInfo} */ option) => values[option.name] ?? values[option.name.replaceAll('-', '_')];
+    const shown = this.options.filter(option => option.common || initialOf(option) !== undefined);
     element('grow-options').replaceChildren(...shown.flatMap((option, i) => [
       ...option.group !== shown[i - 1]?.group ? [make('h2', { textContent: option.group })] : [],
       optionControl(option, '', value => this.set(option.name, value),
-        { prefix: 'grow', slides: true, initial: values[option.name] ?? option.fallback }),
+        { prefix: 'grow', slides: true, initial: initialOf(option) ?? option.fallback }),
     ]));
   }
 

@@ -25,9 +25,22 @@ int failNow() {
 
 int failureOf(BOOL succeeded) { return succeeded ? 0 : errnoOf(::GetLastError()); }
 
+// Windows does not tell a missing folder from a file in its place.
+int failAt(const std::filesystem::path& path) {
+  failNow();
+  if (errno != ENOENT) return -1;
+  for (std::filesystem::path above = path.parent_path(); above.has_relative_path(); above = above.parent_path()) {
+    const DWORD attributes = ::GetFileAttributesW(longPath(above).c_str());
+    if (attributes == INVALID_FILE_ATTRIBUTES) continue;
+    errno = attributes & FILE_ATTRIBUTE_DIRECTORY ? ENOENT : ENOTDIR;
+    break;
+  }
+  return -1;
+}
+
 int openAs(const std::filesystem::path& path, DWORD access, DWORD how, DWORD flags = FILE_ATTRIBUTE_NORMAL) {
   const HANDLE handle = ::CreateFileW(longPath(path).c_str(), access, kShareAll, nullptr, how, flags, nullptr);
-  if (handle == INVALID_HANDLE_VALUE) return failNow();
+  if (handle == INVALID_HANDLE_VALUE) return failAt(path);
   const int descriptor = ::_open_osfhandle(reinterpret_cast<intptr_t>(handle), _O_BINARY | _O_NOINHERIT);
   if (descriptor < 0) ::CloseHandle(handle);
   return descriptor;
@@ -61,7 +74,7 @@ std::optional<FileStatus> statusAt(const std::filesystem::path& path, DWORD flag
   const HANDLE handle = ::CreateFileW(longPath(path).c_str(), FILE_READ_ATTRIBUTES, kShareAll, nullptr, OPEN_EXISTING,
                                       FILE_FLAG_BACKUP_SEMANTICS | flags, nullptr);
   if (handle == INVALID_HANDLE_VALUE) {
-    failNow();
+    failAt(path);
     return std::nullopt;
   }
   const auto status = statusOfHandle(handle);
