@@ -8,8 +8,10 @@ add_link_options(-fwasm-exceptions)
 add_compile_definitions(CLOUDBAKE_SERIAL FMT_USE_LONG_DOUBLE=0 FMT_USE_INT128=0)
 
 # Sources that are for systems with processes and sockets. What stands in for them is in X/wasm/.
-set(CLOUDBAKE_NOT_IN_WASM
-  "/(windows|threads)/|/core/posix/|/app/posix/(allocation|signals)|/io/file/posix/(own_library|process)|/io/file/temporary_file\\.cpp|/io/http/|/app/serve\\.cpp|/pipeline/batch/schedule")
+set(not_in_wasm windows/ threads/ core/posix/ app/posix/allocation app/posix/signals io/file/posix/own_library io/file/posix/process
+    io/file/temporary_file io/http/ app/serve pipeline/batch/schedule)
+list(JOIN not_in_wasm "|/" not_in_wasm)
+set(CLOUDBAKE_NOT_IN_WASM "/${not_in_wasm}")
 
 function(cloudbake_wasm_flags)
   target_include_directories(cloudbake_flags SYSTEM BEFORE INTERFACE ${PROJECT_SOURCE_DIR}/web/libcxx)
@@ -29,9 +31,10 @@ function(cloudbake_wasm_program target)
   # where Debian has acorn, which the linker needs
   set_target_properties(${target} PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" SUFFIX ".cjs"
                         LINK_DEPENDS "${cli}/library.js;${launcher}")
-  target_link_options(${target} PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createProgram -sENVIRONMENT=node -sFILESYSTEM=0 -sWASM_BIGINT=1
-    -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sINVOKE_RUN=0 -sEXIT_RUNTIME=1
-    -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js)
+  target_link_options(${target} PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createProgram -sENVIRONMENT=node
+    -sFILESYSTEM=0 -sWASM_BIGINT=1 -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB
+    -Wl,--stack-first,--wrap=strerror -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0
+    -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js)
   add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${launcher} ${PROJECT_BINARY_DIR} VERBATIM)
 endfunction()
 

@@ -71,7 +71,8 @@ try {
   running.stdout.once('data', () => running.kill('SIGINT'));
   const code = await new Promise(done => { running.on('exit', done); });
   const made = readdirSync(join(empty, 'out')).filter(name => name.endsWith('.glb'));
-  demand(code === 130 && made.length > 0 && made.length < 60, `a signal stops a batch, whose exit code is 130 (${code}, ${made.length} made)`);
+  const some = made.length > 0 && made.length < 60;
+  demand(code === 130 && some, `a signal stops a batch, whose exit code is 130 (${code}, ${made.length} made)`);
   demand(!readdirSync(join(empty, 'out')).some(name => /^\.cloudbake-.*-/.test(name)), 'no temporary file is left');
 } finally {
   rmSync(folder, { recursive: true, force: true });

@@ -112,9 +112,10 @@ export class Host {
   start(words, is_helper, inherited) {
     const { port1, port2 } = new MessageChannel();
     // The state becomes 1 when the thread has ended.
-    const number = this.#processes.size + 1, bell = new Int32Array(new SharedArrayBuffer(4)), state = new Int32Array(new SharedArrayBuffer(4));
+    const [bell, state] = [0, 0].map(() => new Int32Array(new SharedArrayBuffer(4))), number = this.#processes.size + 1;
     this.#processes.set(number, { port: port1, bell, state, is_helper });
-    this.launcher.postMessage({ start: { words, number, is_helper, parent: port2, bell, parentBell: this.bell, state, inherited } }, [port2]);
+    const given = { words, number, is_helper, parent: port2, bell, parentBell: this.bell, state, inherited };
+    this.launcher.postMessage({ start: given }, [port2]);
     return number;
   }
   // A copy of what a descriptor is here, for another process: an end of a pipe to write, or memory from its start.
@@ -272,7 +273,8 @@ export class Host {
   argument(at) { return at ? this.view().getInt32(at >>> 0, true) : 0; }
 
   writeStat(at, stat) {
-    const view = this.view(), place = at >>> 0, put = (offset, value) => view.setUint32(place + offset, Number(BigInt.asUintN(32, value)), true);
+    const view = this.view(), place = at >>> 0;
+    const put = (offset, value) => view.setUint32(place + offset, Number(BigInt.asUintN(32, value)), true);
     for (const [offset, value] of [[0, stat.dev], [4, 0n], [8, stat.ino], [12, stat.mode], [16, stat.nlink], [20, stat.uid], [24, stat.gid],
       [28, stat.rdev], [32, 0n], [48, stat.blksize ?? 4096n], [52, stat.blocks ?? 0n]]) put(offset, value);
     view.setBigInt64(place + 40, stat.size, true);

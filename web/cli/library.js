@@ -1,5 +1,5 @@
-// What Emscripten's libraries call, as functions of web/cli/host.mjs, in place of Emscripten's own file system: files and folders are those of
-// the machine. An object `host` comes with the module.
+// What Emscripten's libraries call, as functions of web/cli/host.mjs, in place of Emscripten's own file system: files and folders are those
+// of the machine. An object `host` comes with the module.
 /* global LibraryManager, mergeInto */
 const calls = {
   __syscall_chdir: 1, __syscall_chmod: 2, __syscall_faccessat: 4, __syscall_fchmod: 2, __syscall_fchmodat: 3, __syscall_fcntl64: 3,
@@ -16,7 +16,11 @@ const calls = {
 };
 const library = {
   $Host__deps: ['$ENV', '$ERRNO_CODES'],
-  $Host__postset: 'Host = Module["host"]; Host.errno = () => ERRNO_CODES; Host.bytes = () => HEAPU8; Object.assign(ENV, Host.environment());',
+  $Host__postset: `
+    Host = Module["host"];
+    Host.errno = () => ERRNO_CODES;
+    Host.bytes = () => HEAPU8;
+    Object.assign(ENV, Host.environment());`,
   $Host: {},
   emscripten_resize_heap__deps: ['$Host', '$emscripten_realloc_buffer'],
   emscripten_resize_heap: new Function('size', `
