@@ -15,7 +15,7 @@ import sys
 
 import setuptools
 from setuptools.command.build_ext import build_ext
-from wheel.bdist_wheel import bdist_wheel
+from wheel.bdist_wheel import bdist_wheel  # type: ignore[import]
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 
