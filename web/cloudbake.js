@@ -98,7 +98,10 @@ function makeCloudbake(createEngine, compiledWasm) {
     }
   }
 
-  /** A preset, by the whole engine only. @param {string} name @param {Options} [options] @param {{ onStage?: (stage: string) => void }} [more] */
+  /**
+   * A preset, by the whole engine only.
+   * @param {string} name @param {Options} [options] @param {{ onStage?: (stage: string) => void }} [more]
+   */
   async function grow(name, options = {}, { onStage: listener } = {}) {
     const module = await startEngine();
     onStage = listener ?? null;

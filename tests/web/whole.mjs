@@ -83,7 +83,8 @@ await testPage(folder, async page => {
   await give('spider.fbx');
   const { state, text } = await isOver(alone, 1);
   demand(state === 'failed' && text.includes('only the program `cloudbake` reads this .fbx')
-    && text.endsWith('the file cloudbake_whole.js, with which this page can do it, too, is not beside the page'), `a missing file is named: ${text}`);
+    && text.endsWith('the file cloudbake_whole.js, with which this page can do it, too, is not beside the page'),
+  `a missing file is named: ${text}`);
   await give('bear.off');
   demand((await isOver(alone, 2)).state === 'baked', 'and what the page can do, it does');
 }, { viewport: { width: 1000, height: 640 } });
