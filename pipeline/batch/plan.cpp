@@ -68,7 +68,7 @@ std::string fillTemplate(const std::string& pattern, const Words& words, const R
   }
   name = fs::path(name).lexically_normal().generic_string();
   while (name.starts_with('/') && !pattern.starts_with('/')) name.erase(0, 1);
-  if (fs::path(name).is_absolute() || name.starts_with("..") || name.starts_with(".cloudbake"))
+  if (fs::path(name).has_root_path() || name.starts_with("..") || name.starts_with(".cloudbake"))
     refuseAt(place, request.file, "name '" + name + "': an output must be inside the output folder: leave out '..' and a leading '/'");
   if (lowerCase(fs::path(name).extension().string()) != ".glb" || fs::path(name).stem().empty())
     refuseAt(place, request.file, "name '" + name + "': outputs are GLB files: end the name in .glb");
