@@ -30,8 +30,10 @@ void passSignalsOn() {
   for (const WorkerSignal& one : workerSignals())
     handleSignal(one.original, [](int signal) {
       const pid_t process = worker;
-      if (process == 0) endBySignal(signal);
-      if (process != 0) passSignalOn(process, signal);
+      if (process == 0)
+        endBySignal(signal);
+      else
+        passSignalOn(process, signal);
     });
 }
 

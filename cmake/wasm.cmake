@@ -24,17 +24,22 @@ set_source_files_properties(preview/backdrop/terrain_kernels.cpp preview/mesh_cl
 
 set(CLOUDBAKE_WASM_LINK -O2 CACHE STRING "How the program is linked: -O2 makes it a third smaller in three minutes, -O1 does not")
 
-# One memory of at most 4 GB, and the files of the system: web/cli/library.js. The launcher is beside what the linker makes.
+# One memory of at most 4 GB, and the functions of a library for what the program asks its host (core/wasm/host.h).
+function(cloudbake_wasm_link target library)
+  # where Debian has acorn, which the linker needs
+  set_target_properties(${target} PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs")
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${library})
+  target_link_options(${target} PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB
+    -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror --js-library ${library} ${ARGN})
+endfunction()
+
+# The files are those of the system. The launcher is beside what the linker makes.
 function(cloudbake_wasm_program target)
   set(cli ${PROJECT_SOURCE_DIR}/web/cli)
   set(launcher ${cli}/cloudbake.mjs ${cli}/host.mjs ${cli}/process.mjs)
-  # where Debian has acorn, which the linker needs
-  set_target_properties(${target} PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" SUFFIX ".cjs"
-                        LINK_DEPENDS "${cli}/library.js;${launcher}")
-  target_link_options(${target} PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createProgram -sENVIRONMENT=node
-    -sFILESYSTEM=0 -sWASM_BIGINT=1 -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB
-    -Wl,--stack-first,--wrap=strerror -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0
-    -sEXPORTED_RUNTIME_METHODS=callMain --js-library ${cli}/library.js)
+  set_target_properties(${target} PROPERTIES SUFFIX ".cjs" LINK_DEPENDS "${launcher}")
+  cloudbake_wasm_link(${target} ${cli}/library.js -sEXPORT_NAME=createProgram -sENVIRONMENT=node -sFILESYSTEM=0 -sWASM_BIGINT=1
+    -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain)
   add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${launcher} ${PROJECT_BINARY_DIR} VERBATIM)
 endfunction()
 
@@ -44,10 +49,8 @@ function(cloudbake_wasm_page)
   add_executable(whole EXCLUDE_FROM_ALL ${web}/module.cpp)
   target_link_libraries(whole PRIVATE cloudbake_pipeline)
   target_compile_definitions(whole PRIVATE CLOUDBAKE_WHOLE)
-  set_target_properties(whole PROPERTIES CXX_LINKER_LAUNCHER "env;NODE_PATH=/usr/share/nodejs" LINK_DEPENDS ${web}/cli/page_library.js)
-  target_link_options(whole PRIVATE ${CLOUDBAKE_WASM_LINK} -sMODULARIZE=1 -sEXPORT_NAME=createEngine -sENVIRONMENT=web,worker
-    -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror -sFILESYSTEM=1
-    -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString --js-library ${web}/cli/page_library.js)
+  cloudbake_wasm_link(whole ${web}/cli/page_library.js -sEXPORT_NAME=createEngine -sENVIRONMENT=web,worker -sFILESYSTEM=1
+    -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString)
   add_custom_command(
     OUTPUT ${PROJECT_BINARY_DIR}/cloudbake_whole.js
     COMMAND ${Python3_EXECUTABLE} ${web}/compose whole ${PROJECT_BINARY_DIR} ${PROJECT_BINARY_DIR}/cloudbake_whole.js

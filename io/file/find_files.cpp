@@ -82,8 +82,8 @@ void match(const fs::path& folder, Component component, Component end, std::vect
       match(path, next, end, found, folders);
     }
   };
-  if (!isPattern(pattern.string())) return take(folder / pattern);
   const std::string text = pattern.string();
+  if (!isPattern(text)) return take(folder / pattern);
   for (const auto& entry : entriesOf(here, true, folders)) {
     const std::string name = entry.path().filename().string();
     const bool may_be_hidden = text.starts_with('.') || text.starts_with("\\.");

@@ -41,11 +41,11 @@ class WakeUp {
   WakeUp(const WakeUp&) = delete;
   WakeUp& operator=(const WakeUp&) = delete;
   ~WakeUp();
-  Socket socket() const { return to_wait_; }
+  Socket socket() const { return socket_; }
   void wake() const;
 
  private:
-  Socket to_wait_ = -1, to_wake_ = -1;
+  Socket socket_ = -1;
 };
 
 inline constexpr int kBacklog = 1024;  ///< connections that wait to be accepted

@@ -38,13 +38,13 @@ bool waitFor(std::span<Waiting> all, int milliseconds) {
   return true;
 }
 
-WakeUp::WakeUp() : to_wait_(::eventfd(0, EFD_CLOEXEC)) {}
+WakeUp::WakeUp() : socket_(::eventfd(0, EFD_CLOEXEC)) {}
 
-WakeUp::~WakeUp() { ::close(to_wait_); }
+WakeUp::~WakeUp() { ::close(socket_); }
 
 void WakeUp::wake() const {
   const uint64_t one = 1;
-  (void)!::write(to_wait_, &one, sizeof one);
+  (void)!::write(socket_, &one, sizeof one);
 }
 
 Socket listenOn(int port) {

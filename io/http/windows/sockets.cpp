@@ -65,19 +65,18 @@ bool waitFor(std::span<Waiting> all, int milliseconds) {
 }
 
 // A datagram to itself.
-WakeUp::WakeUp() : to_wait_(withoutWaiting(::socket(AF_INET, SOCK_DGRAM, IPPROTO_UDP))) {
+WakeUp::WakeUp() : socket_(withoutWaiting(::socket(AF_INET, SOCK_DGRAM, IPPROTO_UDP))) {
   const sockaddr_in any = addressOf(0);
-  ::bind(from(to_wait_), reinterpret_cast<const sockaddr*>(&any), sizeof any);
+  ::bind(from(socket_), reinterpret_cast<const sockaddr*>(&any), sizeof any);
   sockaddr_in own{};
   int size = sizeof own;
-  ::getsockname(from(to_wait_), reinterpret_cast<sockaddr*>(&own), &size);
-  ::connect(from(to_wait_), reinterpret_cast<const sockaddr*>(&own), sizeof own);
-  to_wake_ = to_wait_;
+  ::getsockname(from(socket_), reinterpret_cast<sockaddr*>(&own), &size);
+  ::connect(from(socket_), reinterpret_cast<const sockaddr*>(&own), sizeof own);
 }
 
-WakeUp::~WakeUp() { closeSocket(to_wait_); }
+WakeUp::~WakeUp() { closeSocket(socket_); }
 
-void WakeUp::wake() const { ::send(from(to_wake_), "1", 1, 0); }
+void WakeUp::wake() const { ::send(from(socket_), "1", 1, 0); }
 
 Socket listenOn(int port) {
   const auto refuse = [&](Socket socket) {
