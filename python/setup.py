@@ -34,6 +34,8 @@ class BuildWithCMake(build_ext):
         if not (folder / "python" / "cloudbake" / target.name).exists():
             sys.exit(f"{folder} was built for another Python than {sys.executable}: use that one, or leave out CLOUDBAKE_BUILD")
         target.parent.mkdir(parents=True, exist_ok=True)
+        for stale in target.parent.glob("*.so"):  # of another build, which may have had other libraries
+            stale.unlink()
         late = [folder / name for name in ("libcloudbake_volumes.so", "libcloudbake_foreign.so")]
         if "CLOUDBAKE_PORTABLE:BOOL=ON" in (folder / "CMakeCache.txt").read_text(encoding="utf-8"):
             late = []

@@ -183,21 +183,24 @@ export async function leavesTheCloud(page, what) {
   demand(found.is_inside && !found.covering.length && !found.overflow, `${what} leaves the cloud free: ${JSON.stringify(found)}`);
 }
 
-// From here on what the page throws or complains of is a failure.
-export function watchErrors(page) {
+// From here on what the page throws or complains of is a failure, except that a file of `absent` is not there.
+export function watchErrors(page, absent = []) {
   page.on('pageerror', error => demand(false, `the page throws: ${error.message}`));
-  page.on('console', message => { if (message.type() === 'error') demand(false, `the console says: ${message.text()}`); });
+  page.on('console', message => {
+    if (message.type() !== 'error' || absent.some(name => message.location().url.endsWith(`/${name}`))) return;
+    demand(false, `the console says: ${message.text()}`);
+  });
 }
 
 // Calls work(page, browser) with a page whose errors are failures, then `fallback` with one of SwiftShader, and ends the process with what
 // all tests came to.
-export async function testPage(folder, work, { viewport = { width: 600, height: 400 }, fallback, ...options } = {}) {
+export async function testPage(folder, work, { viewport = { width: 600, height: 400 }, fallback, absent, ...options } = {}) {
   try {
     for (const [tests, renderer] of [[work, LLVMPIPE], [fallback, SWIFTSHADER]])
       if (tests)
         await withBrowser(async browser => {
           const page = await (await newContext(browser, { viewport, ...options })).newPage();
-          watchErrors(page);
+          watchErrors(page, absent);
           await tests(page, browser);
         }, renderer);
   } finally {

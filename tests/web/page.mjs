@@ -415,4 +415,4 @@ await testPage(folder, async page => {
   await bakesLargeOnes(page);
   await showsTheTruth(page);
   await begins(page);
-}, { viewport: { width: 1000, height: 640 }, acceptDownloads: true });
+}, { viewport: { width: 1000, height: 640 }, acceptDownloads: true, absent: ['cloudbake_whole.js'] });
