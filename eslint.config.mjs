@@ -4,7 +4,7 @@ import globals from 'globals';
 
 const readonly = names => Object.fromEntries(names.map(name => [name, 'readonly']));
 // What the other scripts of the page that bakes define: the engine's, and those of packages; and in its tests.
-const ENGINE = readonly(['createEngine', 'makeCloudbake', 'unpackBytes']);
+const ENGINE = readonly(['createEngine', 'makeCloudbake', 'unpackBytes', 'bytesOfDigits']);
 const PAGE = readonly(['axe', 'baker', 'fflate']);
 
 export default [

@@ -2,10 +2,10 @@
 set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
 set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
 find_program(Python3_EXECUTABLE python3 REQUIRED NO_CMAKE_FIND_ROOT_PATH)
-add_compile_options(-fwasm-exceptions -msimd128)
+add_compile_options(-pthread -fwasm-exceptions -msimd128)
 add_link_options(-fwasm-exceptions)
-# One thread. {fmt}: kinds of numbers that nothing prints, of which one needs more than 64 bits.
-add_compile_definitions(CLOUDBAKE_SERIAL FMT_USE_LONG_DOUBLE=0 FMT_USE_INT128=0)
+# {fmt}: kinds of numbers that nothing prints, of which one needs more than 64 bits.
+add_compile_definitions(FMT_USE_LONG_DOUBLE=0 FMT_USE_INT128=0)
 
 # Sources that are for systems with processes and sockets. What stands in for them is in X/wasm/.
 set(not_in_wasm windows/ threads/ core/posix/ app/posix/allocation app/posix/signals io/file/posix/own_library io/file/posix/process
@@ -33,13 +33,14 @@ function(cloudbake_wasm_link target library)
     -sINITIAL_MEMORY=32MB -sTOTAL_STACK=16MB -Wl,--stack-first,--wrap=strerror --js-library ${library} ${ARGN})
 endfunction()
 
-# The files are those of the system. The launcher is beside what the linker makes.
+# The files are those of the system. The launcher, beside what the linker makes, starts the threads.
 function(cloudbake_wasm_program target)
   set(cli ${PROJECT_SOURCE_DIR}/web/cli)
-  set(launcher ${cli}/cloudbake.mjs ${cli}/host.mjs ${cli}/process.mjs)
+  set(launcher ${cli}/cloudbake.mjs ${cli}/host.mjs ${cli}/process.mjs ${cli}/thread.mjs)
   set_target_properties(${target} PROPERTIES SUFFIX ".cjs" LINK_DEPENDS "${launcher}")
-  cloudbake_wasm_link(${target} ${cli}/library.js -sEXPORT_NAME=createProgram -sENVIRONMENT=node -sFILESYSTEM=0 -sWASM_BIGINT=1
-    -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain)
+  cloudbake_wasm_link(${target} ${cli}/library.js -pthread -Wno-pthreads-mem-growth
+    -sDEFAULT_PTHREAD_STACK_SIZE=4MB -sEXPORT_NAME=createProgram -sENVIRONMENT=node,worker -sFILESYSTEM=0 -sWASM_BIGINT=1
+    -sINVOKE_RUN=0 -sEXIT_RUNTIME=1 -sNODEJS_CATCH_EXIT=0 -sNODEJS_CATCH_REJECTION=0 -sEXPORTED_RUNTIME_METHODS=callMain,PThread)
   add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${launcher} ${PROJECT_BINARY_DIR} VERBATIM)
 endfunction()
 
@@ -48,6 +49,7 @@ function(cloudbake_wasm_page)
   set(web ${PROJECT_SOURCE_DIR}/web)
   add_executable(whole EXCLUDE_FROM_ALL ${web}/module.cpp)
   target_link_libraries(whole PRIVATE cloudbake_pipeline)
+  target_sources(whole PRIVATE ${PROJECT_SOURCE_DIR}/third_party/serial_tbb.cpp)  # before oneTBB: such a page has no threads
   target_compile_definitions(whole PRIVATE CLOUDBAKE_WHOLE)
   cloudbake_wasm_link(whole ${web}/cli/page_library.js -sEXPORT_NAME=createEngine -sENVIRONMENT=web,worker -sFILESYSTEM=1
     -sEXPORTED_FUNCTIONS=_malloc,_free,_cloudbake_call -sEXPORTED_RUNTIME_METHODS=UTF8ToString)

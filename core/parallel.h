@@ -1,7 +1,7 @@
 // Loops over several processors: the one way of this code to use them. The turns of a loop depend on nothing that another turn changes, and
 // what is summed is summed in a fixed order, so results are the same for any number of threads. The threads are TBB's, whose headers only
 // core/parallel.cpp needs: it gets the address of a loop's body and calls it once for every block of turns. With CLOUDBAKE_SERIAL, the
-// build for WebAssembly, there is one thread and no library.
+// module for JavaScript, there is one thread and no library.
 #pragma once
 
 #include <algorithm>

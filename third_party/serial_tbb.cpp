@@ -1,13 +1,16 @@
-// What oneTBB's headers call, for a system without threads (WebAssembly): tasks wait in a stack, and the one thread runs them while it
-// waits for a group. As in oneTBB's dispatcher, a task that throws cancels its group, is cancelled itself, and whoever waits gets the
+// What oneTBB's headers call, for a system without threads (WebAssembly in a page): tasks wait in a stack, and the one thread runs them while
+// it waits for a group. As in oneTBB's dispatcher, a task that throws cancels its group, is cancelled itself, and whoever waits gets the
 // exception.
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include <tbb/global_control.h>
+#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -106,6 +109,45 @@ bool attach(d1::task_arena_base&) { return true; }
 void execute(d1::task_arena_base&, d1::delegate_base& work) { work(); }
 void isolate_within_arena(d1::delegate_base& work, std::intptr_t) { work(); }
 int max_concurrency(const d1::task_arena_base*) { return 1; }
+
+void create(d1::global_control&) {}
+void destroy(d1::global_control&) {}
+std::size_t global_control_active_value(int) { return 1; }
+
+// One item after the other goes through all filters.
+class pipeline {
+ public:
+  explicit pipeline(const d1::filter_node& chain) { add(chain); }
+  void run(d1::task_group_context& context) {
+    for (;;) {
+      void* item = (*filters_.front())(nullptr);
+      if (has_ended_ || task_group_context_impl::isCancelled(context)) break;
+      for (std::size_t i = 1; i < filters_.size(); ++i) item = (*filters_[i])(item);
+    }
+  }
+  static void end(d1::base_filter& filter) { filter.my_pipeline->has_ended_ = true; }
+
+ private:
+  struct Delete {
+    void operator()(d1::base_filter* filter) const {
+      filter->~base_filter();
+      r1::deallocate_memory(filter);
+    }
+  };
+  void add(const d1::filter_node& node) {
+    if (node.left && node.right) {
+      add(*node.left);
+      add(*node.right);
+    } else {
+      filters_.emplace_back(node.create_filter())->my_pipeline = this;
+    }
+  }
+  std::vector<std::unique_ptr<d1::base_filter, Delete>> filters_;
+  bool has_ended_ = false;
+};
+
+void parallel_pipeline(d1::task_group_context& context, std::size_t, const d1::filter_node& chain) { pipeline(chain).run(context); }
+void set_end_of_input(d1::base_filter& filter) { pipeline::end(filter); }
 
 void* allocate_memory(std::size_t bytes) { return ::operator new(bytes); }
 void deallocate_memory(void* block) { ::operator delete(block); }

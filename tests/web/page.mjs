@@ -77,7 +77,7 @@ async function bakes(page) {
     && requests.filter(url => url.startsWith('file:')).length === 1, `it asks for nothing but itself: ${requests.length} requests`);
   const policy = await page.getAttribute('meta[http-equiv="Content-Security-Policy"]', 'content');
   demand(policy.includes("default-src 'none'") && policy.includes("connect-src 'none'"), 'and may not ask for anything');
-  demand(statSync(built).size <= 760_000, `the page has ${statSync(built).size} bytes, of at most 760,000`);
+  demand(statSync(built).size <= 700_000, `the page has ${statSync(built).size} bytes, of at most 700,000`);
 }
 
 async function hasOptions(page) {

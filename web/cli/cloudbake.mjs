@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 // npx cloudbake: the command line of cloudbake as WebAssembly. The program runs in a thread, so that this one can take signals and start
-// further threads for it.
+// further threads for it, which share its memory or run copies of it.
 import { readFileSync, unlinkSync } from 'node:fs';
 import { constants } from 'node:os';
 import { isatty } from 'node:tty';
@@ -24,23 +24,35 @@ const compiled = WebAssembly.compile(readFileSync(program));
  * becomes 1 at the end.
  */
 function start(given, end) {
+  const limit = new Float64Array(new SharedArrayBuffer(8)), resourceLimits = { stackSizeMb: STACK_MEGABYTES };
   const worker = new Worker(new URL('process.mjs', import.meta.url), {
-    workerData: { columns, program, signals, ...given },
+    workerData: { columns, program, signals, limit, ...given },
     transferList: given.parent ? [given.parent] : [],
-    resourceLimits: { stackSizeMb: STACK_MEGABYTES },
+    resourceLimits,
   });
   bells.add(given.bell);
-  const started = new Map();  // by this copy, by their numbers
-  worker.on('message', message => {
+  const started = new Map();  // copies, by this copy, by their numbers
+  const threads = [];         // of this copy, beside its first
+  const startThread = (module, what) => {
+    const thread = new Worker(new URL('thread.mjs', import.meta.url), {
+      workerData: { columns, program, signals, limit, bell: given.bell, module, ...what }, resourceLimits,
+    });
+    threads.push(thread);
+    take(thread);
+    thread.on('error', error => end({ crash: error.message }));
+  };
+  const take = one => one.on('message', message => {
+    if (message.thread) compiled.then(module => startThread(module, message.thread));
     if (message.temporary) temporary[message.exists ? 'set' : 'delete'](String(message.temporary), message.temporary);
     if (message.start) started.set(message.start.number, start(message.start, () => {}));
     if (message.stop) started.get(message.stop)?.terminate();
     if (message.ended) end(message.ended), worker.terminate();
   });
+  take(worker);
   worker.on('error', error => end({ crash: error.message }));
   worker.on('exit', () => {
     bells.delete(given.bell);
-    for (const one of started.values()) one.terminate();
+    for (const one of [...started.values(), ...threads]) one.terminate();
     if (given.state) Atomics.store(given.state, 0, 1), ring(given.parentBell);
     end({ crash: 'its thread ended' });
   });

@@ -7,6 +7,7 @@ import { MessageChannel, receiveMessageOnPort } from 'node:worker_threads';
 
 const windows = process.platform === 'win32';
 const PAGE = 65536, MOST = 2 ** 32 - PAGE;  // bytes of memory
+const MOST_THREADS = 16;                    // each takes some 20 MB
 const BROKEN_PIPE = 141;                    // the exit code
 const FIRST_FOLDER = 1 << 20;               // folders that are open have numbers from here
 const FIRST_VIRTUAL = 1 << 24;              // and so have pipes and memory
@@ -36,7 +37,6 @@ class CallError extends Error {
 export class Host {
   /** @type {() => Record<string, number>} */ errno = () => ({});
   /** @type {() => Uint8Array} */ bytes = () => new Uint8Array();
-  memoryLimit = MOST;
   #files = new Map();      // of descriptors: { at, path, lock }; `at` is the place where is read and written, null of what has no places
   #folders = new Map();    // open ones: { path, entries, next }
   #virtual = new Map();    // descriptors without a file: { memory, at }, { pipe } to read, { to } a pipe to write, {} the null device
@@ -49,12 +49,13 @@ export class Host {
 
   /**
    * What a process is given: its command line, ports to the launcher and to the process that started it, which counts in `parentBell` what
-   * is sent to it, and the descriptors that it inherits. `signals` has the number of one that was noted, and whether any is.
-   * @param {{ words: string[], columns: number, program: string, signals: Int32Array, bell: Int32Array, launcher: MessagePort,
+   * is sent to it, and the descriptors that it inherits. `signals` has the number of one that was noted, and whether any is; `limit`, which
+   * its threads share, the most bytes of memory, or 0.
+   * @param {{ words: string[], columns: number, program: string, signals: Int32Array, bell: Int32Array, limit: Float64Array, launcher: MessagePort,
    *   parentBell?: Int32Array, parent?: MessagePort, is_helper?: boolean, inherited?: [number, any][] }} given
    */
-  constructor({ words, columns, program, signals, bell, launcher, parentBell, parent, is_helper = false, inherited = [] }) {
-    Object.assign(this, { words, columns, program, signals, bell, launcher, isHelper: is_helper });
+  constructor({ words, columns, program, signals, bell, limit, launcher, parentBell, parent, is_helper = false, inherited = [] }) {
+    Object.assign(this, { words, columns, program, signals, bell, limit, launcher, isHelper: is_helper });
     if (parent) this.#processes.set(0, { port: parent, bell: parentBell });
     for (const [number, what] of inherited) this.#virtual.set(number, what);
     for (const [name, call] of Object.entries(calls))
@@ -80,13 +81,21 @@ export class Host {
     return Math.floor(Math.min(this.memoryLimit, Math.max(wanted + PAGE - 1, more)) / PAGE) * PAGE;
   }
 
-  cloudbake_limit_memory(bytes) { this.memoryLimit = Math.min(MOST, Math.ceil(bytes / PAGE) * PAGE); }
+  get memoryLimit() { return this.limit[0] || MOST; }
+  cloudbake_limit_memory(bytes) { this.limit[0] = Math.min(MOST, Math.ceil(bytes / PAGE) * PAGE); }
   cloudbake_memory_limit() { return this.memoryLimit; }
   cloudbake_machine_memory() {
     const allowed = process.constrainedMemory?.() ?? 0;
     return allowed > 0 ? Math.min(allowed, os.totalmem()) : os.totalmem();
   }
   cloudbake_processors() { return os.availableParallelism?.() ?? os.cpus().length; }
+
+  threadCount() { return Math.min(MOST_THREADS, this.cloudbake_processors()); }
+  /** Has a thread of this copy started. @param {{ thread: number, routine: number, argument: number, memory: WebAssembly.Memory }} what */
+  startThread(what) {
+    this.launcher.postMessage({ thread: what });
+    return 0;
+  }
 
   // --- Signals, locks, temporary files ---
 

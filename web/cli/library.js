@@ -22,6 +22,11 @@ const library = {
     Host.bytes = () => HEAPU8;
     Object.assign(ENV, Host.environment());`,
   $Host: {},
+  __pthread_create_js: new Function('thread', 'attributes', 'routine', 'argument', `
+    return Host.startThread({ thread, routine, argument, memory: wasmMemory });`),
+  __pthread_create_js__deps: ['$Host'],
+  emscripten_num_logical_cores: new Function('return Host.threadCount();'),
+  emscripten_num_logical_cores__deps: ['$Host'],
   emscripten_resize_heap__deps: ['$Host', '$emscripten_realloc_buffer'],
   emscripten_resize_heap: new Function('size', `
     const grown = Host.grownMemory(size >>> 0, HEAPU8.length);

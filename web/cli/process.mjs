@@ -18,7 +18,7 @@ async function run(module, host) {
         throw error;
       },
       instantiateWasm: (imports, use) => {
-        use(new WebAssembly.Instance(module, imports));
+        use(new WebAssembly.Instance(module, imports), module);
         return {};
       },
     });

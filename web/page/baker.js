@@ -1,6 +1,7 @@
 // The page that bakes: files and folders that are dropped go to a Worker, and what it bakes is shown in the viewer of `cloudbake view`.
-// `createEngine`, `makeCloudbake`, `unpackBytes` and `fflate` are of the other scripts of the page.
+// `createEngine`, `makeCloudbake`, `unpackBytes`, `bytesOfDigits` and `fflate` are of the other scripts of the page.
 
+import { decompressFile } from 'js-lzma';
 import { hasRoom, listenToDock } from '../../viewer/dock.js';
 import { element, make, onClick, setPageState } from '../../viewer/dom.js';
 import { GlbReader, sceneOfGlb } from '../../viewer/glb.js';
@@ -149,6 +150,15 @@ class BakeWorker {
   }
 }
 
+/** What web/compose packed by LZMA. @param {string} text */
+function unpackStrongly(text) {
+  const packed = bytesOfDigits(text), SIZE_AT = 5;  // behind the properties
+  const bytes = new Uint8Array(new DataView(packed.buffer, packed.byteOffset).getUint32(SIZE_AT, true));
+  let read = 0, written = 0;
+  decompressFile({ readByte: () => packed[read++] }, { writeByte: byte => { bytes[written++] = byte; } });
+  return bytes;
+}
+
 const WHOLE_FILE = 'cloudbake_whole.js';
 
 /**
@@ -171,7 +181,7 @@ async function openWhole() {
 class Baker {
   constructor() {
     this.page = JSON.parse(textOf('page'));
-    this.wasm = unpackBytes(textOf('engine-wasm')).then(bytes => WebAssembly.compile(bytes));
+    this.wasm = WebAssembly.compile(unpackStrongly(textOf('engine-wasm')));
     this.engine = makeCloudbake(createEngine, () => this.wasm);  // for the light of the asset that is shown
     this.worker = new BakeWorker(this.wasm, textOf('engine'));
     /** @type {Promise<BakeWorker>} */

@@ -53,7 +53,12 @@ type CreateEngine = (settings: object) => Promise<Engine>;
 declare const createEngine: CreateEngine;
 
 // web/compose puts them in front.
+declare function bytesOfDigits(text: string): Uint8Array<ArrayBuffer>;
 declare function unpackBytes(text: string): Promise<Uint8Array<ArrayBuffer>>;
+declare module 'js-lzma' {
+  /** Of a file .lzma; throws a text. */
+  export function decompressFile(from: { readByte(): number }, to: { writeByte(byte: number): void }): void;
+}
 declare const fflate: { zipSync(files: Record<string, [Uint8Array, object]>): Uint8Array };
 
 /** Takes what web/compose has put into cloudbake_whole.js. */

@@ -25,10 +25,16 @@ int failNow() {
 
 int failureOf(BOOL succeeded) { return succeeded ? 0 : errnoOf(::GetLastError()); }
 
-// Windows does not tell a missing folder from a file in its place.
+// Windows does not tell a missing folder from a file in its place, or from a name that is too long for a folder's entry.
 int failAt(const std::filesystem::path& path) {
+  constexpr size_t kLongestName = 255;
   failNow();
   if (errno != ENOENT) return -1;
+  for (const std::filesystem::path& name : path)
+    if (name.native().size() > kLongestName) {
+      errno = ENAMETOOLONG;
+      return -1;
+    }
   for (std::filesystem::path above = path.parent_path(); above.has_relative_path(); above = above.parent_path()) {
     const DWORD attributes = ::GetFileAttributesW(longPath(above).c_str());
     if (attributes == INVALID_FILE_ATTRIBUTES) continue;

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/parallel.h"
 #include "core/text/json.h"
 #include "core/wasm/host.h"
 #include "io/file/input_files.h"
@@ -88,7 +89,7 @@ class Helpers {
     idle_.pop_back();
     const AssetSlot slot = steps_.start(job);
     helper.send(textOf(
-        {{"name", slot.asset.name}, {"memory", std::min(jobs_[job].memory, memory_)}, {"may_have_more", jobs_[job].memory < memory_}}));
+        {{"name", slot.asset.name}, {"threads", threads_}, {"memory", std::min(jobs_[job].memory, memory_)}, {"may_have_more", jobs_[job].memory < memory_}}));
     const int number = helper.number();
     running_.emplace(number, Running{std::move(helper), job, slot});
   }
@@ -118,6 +119,7 @@ class Helpers {
   const AssetRun& run_;
   const AssetSteps& steps_;
   const size_t at_once_ = assetsAtOnce(run_.settings);
+  const int threads_ = int(std::max(size_t(1), at_once_ / std::max(size_t(1), jobs_.size())));  // for each asset
   std::vector<size_t> waiting_;
   std::map<int, Running> running_;
   std::vector<Helper> idle_;
@@ -144,6 +146,7 @@ void helpIfHelper(const Settings& settings, std::span<const Given> given) {
     const std::string name = order.at("name");
     const auto asset = std::find_if(plan.assets.begin(), plan.assets.end(), [&](const PlannedAsset& one) { return one.name == name; });
     if (asset == plan.assets.end()) throw changedWhileRead(name);
+    const ThreadLimit limit(order.at("threads"));
     AssetInputs inputs;
     AssetRecord record;
     record.name = name;
