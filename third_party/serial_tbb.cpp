@@ -14,6 +14,10 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+// The program is compiled for threads. If it is linked for one thread, values of the thread have addresses from 0, and wasm-ld 14 would add
+// the place of the first one.
+asm(".globaltype __tls_base, i32\n.globl __tls_base\n__tls_base:\n");
+
 namespace tbb::detail::r1 {
 
 class tbb_exception_ptr {

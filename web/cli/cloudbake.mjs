@@ -9,6 +9,7 @@ import { setFlagsFromString } from 'node:v8';
 import { Worker } from 'node:worker_threads';
 
 const INTERNAL = 4, STACK_MEGABYTES = 16;
+const THREAD_DELAY = 30;  // milliseconds of work for which no further thread is started
 const program = fileURLToPath(new URL('cloudbake.wasm', import.meta.url));
 const columns = isatty(2) ? process.stderr.columns : 0;
 const signals = new Int32Array(new SharedArrayBuffer(8));  // the one that was noted, and whether any is
@@ -19,42 +20,68 @@ setFlagsFromString('--wasm-lazy-validation');
 const bells = new Set();  // one for each copy of the program
 const compiled = WebAssembly.compile(readFileSync(program));
 
+const begun = new Map();  // for each thread that has not ended, a promise that it has begun
+
+/** Starts a thread of Node. @param {string} file @param {object} given @param {(message: any) => void} take what it sends */
+function launch(file, given, take) {
+  const worker = new Worker(new URL(file, import.meta.url), {
+    workerData: { columns, program, signals, ...given },
+    transferList: given.parent ? [given.parent] : [],
+    resourceLimits: { stackSizeMb: STACK_MEGABYTES },
+  });
+  begun.set(worker, new Promise(done => {
+    worker.once('message', done);
+    worker.once('exit', done);
+  }));
+  worker.on('message', take);
+  worker.on('exit', () => begun.delete(worker));
+  return worker;
+}
+
+/** Ends a thread, but not before it has begun: Node 20 may crash then. */
+const stop = worker => Promise.resolve(begun.get(worker)).then(() => worker.terminate());
+
+async function leave(code) {
+  await Promise.all(begun.values());
+  process.exit(code);
+}
+
 /**
  * Starts a copy of the program, and calls `end` with how it ended: { code } or { crash }. `given` goes to its host (host.mjs); its `state`
  * becomes 1 at the end.
  */
 function start(given, end) {
-  const limit = new Float64Array(new SharedArrayBuffer(8)), resourceLimits = { stackSizeMb: STACK_MEGABYTES };
-  const worker = new Worker(new URL('process.mjs', import.meta.url), {
-    workerData: { columns, program, signals, limit, ...given },
-    transferList: given.parent ? [given.parent] : [],
-    resourceLimits,
-  });
-  bells.add(given.bell);
-  const started = new Map();  // copies, by this copy, by their numbers
-  const threads = [];         // of this copy, beside its first
-  const startThread = (module, what) => {
-    const thread = new Worker(new URL('thread.mjs', import.meta.url), {
-      workerData: { columns, program, signals, limit, bell: given.bell, module, ...what }, resourceLimits,
-    });
-    threads.push(thread);
-    take(thread);
-    thread.on('error', error => end({ crash: error.message }));
+  const shared = { limit: new Float64Array(new SharedArrayBuffer(8)), bell: given.bell };
+  const copies = new Map();  // that this copy started, by their numbers
+  const threads = [];        // of this copy, beside its first
+  let has_ended = false;
+  const takeEnd = ended => {
+    if (has_ended) return;
+    has_ended = true;
+    end(ended);
+    stop(worker);
   };
-  const take = one => one.on('message', message => {
-    if (message.thread) compiled.then(module => startThread(module, message.thread));
+  const startThread = (module, what) => {
+    if (has_ended) return;
+    const thread = launch('thread.mjs', { ...shared, module, ...what }, take);
+    thread.on('error', error => takeEnd({ crash: error.message }));
+    threads.push(thread);
+  };
+  const take = message => {
+    if (message.thread) setTimeout(() => compiled.then(module => startThread(module, message.thread)), THREAD_DELAY);
     if (message.temporary) temporary[message.exists ? 'set' : 'delete'](String(message.temporary), message.temporary);
-    if (message.start) started.set(message.start.number, start(message.start, () => {}));
-    if (message.stop) started.get(message.stop)?.terminate();
-    if (message.ended) end(message.ended), worker.terminate();
-  });
-  take(worker);
-  worker.on('error', error => end({ crash: error.message }));
+    if (message.start) copies.set(message.start.number, start(message.start, () => {}));
+    if (message.stop && copies.has(message.stop)) stop(copies.get(message.stop));
+    if (message.ended) takeEnd(message.ended);
+  };
+  const worker = launch('process.mjs', { ...given, ...shared }, take);
+  bells.add(given.bell);
+  worker.on('error', error => takeEnd({ crash: error.message }));
   worker.on('exit', () => {
     bells.delete(given.bell);
-    for (const one of [...started.values(), ...threads]) one.terminate();
+    for (const one of [...copies.values(), ...threads]) stop(one);
     if (given.state) Atomics.store(given.state, 0, 1), ring(given.parentBell);
-    end({ crash: 'its thread ended' });
+    takeEnd({ crash: 'its thread ended' });
   });
   compiled.then(module => worker.postMessage(module));
   return worker;
@@ -90,5 +117,5 @@ start({ words: process.argv.slice(2).map(asSeen), bell: new Int32Array(new Share
     removeTemporaryFiles();
     process.stderr.write(`cloudbake: the program crashed (${crash}): report it with the input, or try the native program\n`);
   }
-  process.exit(crash ? INTERNAL : code);
+  leave(crash ? INTERNAL : code);
 });

@@ -29,6 +29,7 @@ async function run(module, host) {
   }
 }
 
+parentPort.postMessage({ begun: true });
 parentPort.once('message', async module => {
   const host = new Host({ ...workerData, launcher: parentPort });
   host.tellEnd(await run(module, host));

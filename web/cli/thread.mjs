@@ -20,4 +20,5 @@ const running = await createProgram({
 running.__emscripten_thread_init(thread, 0, 0, 1);  // not the first one, and it may wait
 running.establishStackSpace();
 running.PThread.threadInit();
+parentPort.postMessage({ begun: true });
 running.__emscripten_thread_exit(running.invokeEntryPoint(routine, argument));
