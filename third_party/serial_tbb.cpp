@@ -1,6 +1,6 @@
-// What oneTBB's headers call, for a system without threads (WebAssembly in a page): tasks wait in a stack, and the one thread runs them while
-// it waits for a group. As in oneTBB's dispatcher, a task that throws cancels its group, is cancelled itself, and whoever waits gets the
-// exception.
+// What oneTBB's headers call, for a system without threads (WebAssembly in a page): tasks wait in a stack, and the one thread runs them
+// while it waits for a group. As in oneTBB's dispatcher, a task that throws cancels its group, is cancelled itself, and whoever waits gets
+// the exception.
 #include <cstdlib>
 #include <exception>
 #include <memory>

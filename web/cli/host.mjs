@@ -51,8 +51,8 @@ export class Host {
    * What a process is given: its command line, ports to the launcher and to the process that started it, which counts in `parentBell` what
    * is sent to it, and the descriptors that it inherits. `signals` has the number of one that was noted, and whether any is; `limit`, which
    * its threads share, the most bytes of memory, or 0.
-   * @param {{ words: string[], columns: number, program: string, signals: Int32Array, bell: Int32Array, limit: Float64Array, launcher: MessagePort,
-   *   parentBell?: Int32Array, parent?: MessagePort, is_helper?: boolean, inherited?: [number, any][] }} given
+   * @param {{ words: string[], columns: number, program: string, signals: Int32Array, bell: Int32Array, limit: Float64Array,
+   *   launcher: MessagePort, parentBell?: Int32Array, parent?: MessagePort, is_helper?: boolean, inherited?: [number, any][] }} given
    */
   constructor({ words, columns, program, signals, bell, limit, launcher, parentBell, parent, is_helper = false, inherited = [] }) {
     Object.assign(this, { words, columns, program, signals, bell, limit, launcher, isHelper: is_helper });

@@ -88,8 +88,10 @@ class Helpers {
     Helper helper = std::move(idle_.back());
     idle_.pop_back();
     const AssetSlot slot = steps_.start(job);
-    helper.send(textOf(
-        {{"name", slot.asset.name}, {"threads", threads_}, {"memory", std::min(jobs_[job].memory, memory_)}, {"may_have_more", jobs_[job].memory < memory_}}));
+    helper.send(textOf({{"name", slot.asset.name},
+                        {"threads", threads_},
+                        {"memory", std::min(jobs_[job].memory, memory_)},
+                        {"may_have_more", jobs_[job].memory < memory_}}));
     const int number = helper.number();
     running_.emplace(number, Running{std::move(helper), job, slot});
   }
