@@ -139,6 +139,12 @@ class FullCloud {
   explicit FullCloud(BakedMesh full)
       : full_(std::move(full)), surface_(nearestSurface(full_.surface)), points_(spreadOverSurface(full_.surface, kComparedPoints)) {
     for (const SurfacePoint& point : points_) positions_.push_back(valueAt(point, full_.surface.positions));
+    transmittances_.resize(points_.size() * lights_.size());
+    parallelFor(points_.size(), [&](size_t i) {
+      const Lobe lobe = blendedLobe(points_[i], full_.lobes);
+      for (size_t j = 0; j < lights_.size(); ++j)
+        transmittances_[i * lights_.size() + j] = lobeTransmittance(lobe, lights_[j], full_.info.shape, full_.info.extinction);
+    });
   }
 
   const BakedMesh& mesh() const { return full_; }
@@ -164,25 +170,26 @@ class FullCloud {
 
   // `nearest`: to points_, on the level.
   double transmittanceRms(std::span<const Lobe> level_lobes, const std::vector<SurfacePoint>& nearest) const {
-    const std::vector<Vec3> lights = bothSenses(sweepAxes(kComparedLights));
     std::vector<double> squares(points_.size());
     parallelFor(points_.size(), [&](size_t i) {
-      const Lobe a = blendedLobe(points_[i], full_.lobes), b = blendedLobe(nearest[i], level_lobes);
-      for (const Vec3& light : lights) {
-        const double difference = lobeTransmittance(a, light, full_.info.shape, full_.info.extinction) -
-                                  lobeTransmittance(b, light, full_.info.shape, full_.info.extinction);
+      const Lobe lobe = blendedLobe(nearest[i], level_lobes);
+      for (size_t j = 0; j < lights_.size(); ++j) {
+        const double difference =
+            transmittances_[i * lights_.size() + j] - lobeTransmittance(lobe, lights_[j], full_.info.shape, full_.info.extinction);
         squares[i] += difference * difference;
       }
     });
     double sum = 0;
     for (const double square : squares) sum += square;
-    return std::sqrt(sum / double(std::max<size_t>(1, points_.size() * lights.size())));
+    return std::sqrt(sum / double(std::max<size_t>(1, points_.size() * lights_.size())));
   }
 
   BakedMesh full_;
   std::unique_ptr<const NearestSurface> surface_;
   std::vector<SurfacePoint> points_;
   std::vector<Vec3> positions_;
+  const std::vector<Vec3> lights_ = bothSenses(sweepAxes(kComparedLights));
+  std::vector<float> transmittances_;  // of points_ under each light
 };
 
 // Levels of `counts` vertices.

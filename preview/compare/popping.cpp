@@ -39,18 +39,18 @@ Camera cameraFrom(const Box& box, float azimuth) {
   return camera;
 }
 
-Image drawn(const BakedMesh& mesh, const Camera& camera) {
+Image drawn(const BakedMesh& mesh, const Camera& camera, const Image* sky = nullptr) {
   LightSettings light = lightForSun(kSunAzimuth, kSunElevation);
   light.samples_per_side = 1;
   light.sky.colors = kColors;
   light.sky.horizon_exponent = 8;
   light.sky.glow = 0.25F;
-  return renderLobe(mesh, camera, light);
+  return renderLobe(mesh, camera, light, sky);
 }
 
-// Linear colours, and in `shows` 1 where there is the mesh.
+// Linear colours, the same as they are shown, and in `shows` 1 where there is the mesh.
 struct Picture {
-  Image colors;
+  Image colors, tones;
   std::vector<uint8_t> shows;
 };
 
@@ -58,29 +58,30 @@ struct Picture {
 constexpr float kSeen = 1e-3F;
 
 Picture pictureOf(const BakedMesh& mesh, const Camera& camera, const Image& sky) {
-  Picture picture{drawn(mesh, camera), {}};
+  Picture picture{drawn(mesh, camera, &sky), {}, {}};
+  picture.tones = toneMap(picture.colors);
   for (size_t i = 0; i < sky.pixels.size(); ++i) picture.shows.push_back(length(picture.colors.pixels[i] - sky.pixels[i]) > kSeen);
   return picture;
 }
 
 Picture halved(const Picture& picture) {
   const int width = picture.colors.width / 2, height = picture.colors.height / 2;
-  Picture half{blankImage(width, height), std::vector<uint8_t>(size_t(width) * size_t(height))};
+  Picture half{blankImage(width, height), {}, std::vector<uint8_t>(size_t(width) * size_t(height))};
   for (int y = 0; y < 2 * height; ++y)
     for (int x = 0; x < 2 * width; ++x) {
       half.colors.at(x / 2, y / 2) += picture.colors.at(x, y) / 4;
       half.shows[size_t(y / 2) * size_t(width) + size_t(x / 2)] |= picture.shows[size_t(y) * 2 * size_t(width) + size_t(x)];
     }
+  half.tones = toneMap(half.colors);
   return half;
 }
 
 float rmsBetween(const Picture& a, const Picture& b) {
-  const Image tones_a = toneMap(a.colors), tones_b = toneMap(b.colors);
   double squares = 0;
   size_t count = 0;
   for (size_t i = 0; i < a.shows.size(); ++i) {
     if (!a.shows[i] && !b.shows[i]) continue;
-    const Vec3 difference = (tones_a.pixels[i] - tones_b.pixels[i]) * 255;
+    const Vec3 difference = (a.tones.pixels[i] - b.tones.pixels[i]) * 255;
     squares += double(dot(difference, difference)) / 3;
     ++count;
   }

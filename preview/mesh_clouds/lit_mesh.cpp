@@ -316,6 +316,13 @@ void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& cr
   std::sort(crossings.begin(), crossings.end(), isBefore);
 }
 
+void findCrossings(const LitMesh& lit, const Ray& ray, std::span<const uint32_t> met, std::vector<Crossing>& crossings) {
+  crossings.clear();
+  for (const uint32_t triangle : met)
+    if (const auto crossing = crossTriangle(lit, triangle, ray)) crossings.push_back(*crossing);
+  std::sort(crossings.begin(), crossings.end(), isBefore);
+}
+
 std::optional<Crossing> nearestCrossing(const LitMesh& lit, const Ray& ray) {
   std::optional<Crossing> nearest;
   visitTriangles(lit, ray, [&](uint32_t triangle) {

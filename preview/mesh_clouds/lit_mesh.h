@@ -154,6 +154,8 @@ struct Crossing {
 
 /// Every triangle that a ray of the frame meets, near to far. A ray through an edge meets both triangles of the edge.
 void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& crossings);
+/// The same for a ray of which it is known which triangles it meets.
+void findCrossings(const LitMesh& lit, const Ray& ray, std::span<const uint32_t> met, std::vector<Crossing>& crossings);
 
 /// The first of them; none if the ray meets no triangle.
 std::optional<Crossing> nearestCrossing(const LitMesh& lit, const Ray& ray);

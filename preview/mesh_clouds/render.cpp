@@ -13,6 +13,7 @@
 
 #include "core/parallel.h"
 #include "core/srgb.h"
+#include "preview/mesh_clouds/pixel_triangles.h"
 #include "preview/mesh_clouds/tone_kernels.h"
 
 namespace cloudbake {
@@ -42,9 +43,10 @@ void dropRepeated(const LitMesh& lit, std::vector<Crossing>& crossings) {
 Vec3 colorAt(const Crossing& crossing, const SkyColors& colors) { return cloudColor(crossing.shade, colors) * crossing.color; }
 
 // The cloud's intervals over the sky, front to back; σ_v and crossings in the frame.
-Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float view_extinction, const SkyColors& colors,
-                const LightSettings& light) {
-  if (crossings.empty()) return skyColor(ray.direction, light.sky);
+template <class Sky>
+Vec3 colorAlong(const std::vector<Crossing>& crossings, float view_extinction, const SkyColors& colors, const LightSettings& light,
+                const Sky& sky) {
+  if (crossings.empty()) return sky();
   int sum = 0;
   for (const Crossing& crossing : crossings) sum += crossing.sign;
   if (sum != 0 || !(view_extinction > 0)) return colorAt(crossings.front(), colors);
@@ -64,11 +66,11 @@ Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float vi
     color += (near * (1 - passed) + (far - near) * later) * through;
     through *= passed;
   }
-  return color + skyColor(ray.direction, light.sky) * through;
+  return color + sky() * through;
 }
 
 // `extinction` is the mesh's σ per world unit.
-Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, const LightSettings& light) {
+Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, const LightSettings& light, const Image* sky = nullptr) {
   const float view_extinction = light.view_extinction * extinction * lit.size;
   Camera local = camera;
   local.look_from = lit.toFrame(camera.look_from);
@@ -78,15 +80,22 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
 
   Image image = blankImage(camera.width, camera.height);
   const CameraRays rays(local);
+  const auto pixels = places.size() == 1 ? PixelTriangles::of(lit.positions, lit.triangles, local) : std::nullopt;
   parallelFor(camera.height, [&](int y) {
     std::vector<Crossing> crossings;
+    PixelTriangles::Row row;
+    if (pixels) pixels->findRow(y, row);
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
       for (const Vec2 place : places) {
         const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
-        findCrossings(lit, ray, crossings);
+        if (pixels)
+          findCrossings(lit, ray, row.at(x), crossings);
+        else
+          findCrossings(lit, ray, crossings);
         dropRepeated(lit, crossings);
-        sum += colorAlong(ray, crossings, view_extinction, colors, light);
+        sum +=
+            colorAlong(crossings, view_extinction, colors, light, [&] { return sky ? sky->at(x, y) : skyColor(ray.direction, light.sky); });
       }
       image.at(x, y) = sum / float(places.size());
     }
@@ -96,9 +105,9 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
 
 }  // namespace
 
-Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light) {
+Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light, const Image* sky) {
   const Instance instance{&mesh, {}};
-  return renderLit(lightMeshes({&instance, 1}, light), worldExtinction(instance, light), camera, light);
+  return renderLit(lightMeshes({&instance, 1}, light), worldExtinction(instance, light), camera, light, sky);
 }
 
 Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light) {

@@ -15,7 +15,8 @@ namespace cloudbake {
 /// `mesh`: finite positions, indices in range, one lobe per vertex; missing normals are computed by angle.
 /// A mesh without triangles gives the sky. The picture does not depend on the mesh's size and place, or on the number of threads.
 /// If a ray finds no inside (an open mesh), the first surface is opaque. Throws std::invalid_argument if lobes are missing.
-Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light);
+/// `sky`: the picture of a mesh without triangles, if it is there already. Then the light must have one ray per pixel.
+Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light, const Image* sky = nullptr);
 
 /// The same picture of a mesh with given shades, one per vertex (preview/mesh_clouds/lit_mesh.h makes some); lobes and light.half_lambert
 /// are ignored. renderLobe does this with the shades of lightMeshes. Throws std::invalid_argument if shades are missing.
