@@ -53,8 +53,7 @@ TEST(PixelTriangles, LeaveNoGapBetweenTriangles) {
   const auto insideOf = [](int at) { return std::abs(at - 25) < 14; };
   for (int y = 0; y < 51; ++y) {
     pixels->findRow(y, row);
-    for (int x = 0; x < 51; ++x)
-      EXPECT_GE(row.at(x).size(), insideOf(x) && insideOf(y) ? 1U : 0U) << x << ", " << y;
+    for (int x = 0; x < 51; ++x) EXPECT_GE(row.at(x).size(), insideOf(x) && insideOf(y) ? 1U : 0U) << x << ", " << y;
   }
 }
 
