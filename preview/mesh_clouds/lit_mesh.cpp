@@ -177,6 +177,16 @@ void visitTriangles(const LitMesh& lit, const Ray& ray, const Visit& visit) {
   if (lit.rays) lit.rays->forHits(ray, [&](const RayHit& hit) { visit(hit.triangle); });
 }
 
+// `forMet` calls what it is given with every triangle that the ray meets.
+template <typename ForMet>
+void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& crossings, const ForMet& forMet) {
+  crossings.clear();
+  forMet([&](uint32_t triangle) {
+    if (const auto crossing = crossTriangle(lit, triangle, ray)) crossings.push_back(*crossing);
+  });
+  std::sort(crossings.begin(), crossings.end(), isBefore);
+}
+
 }  // namespace
 
 LightSettings lightForSun(float azimuth_degrees, float elevation_degrees) {
@@ -309,18 +319,11 @@ std::vector<Shade> lambertShades(const SurfaceMesh& surface, Vec3 to_sun) {
 }
 
 void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& crossings) {
-  crossings.clear();
-  visitTriangles(lit, ray, [&](uint32_t triangle) {
-    if (const auto crossing = crossTriangle(lit, triangle, ray)) crossings.push_back(*crossing);
-  });
-  std::sort(crossings.begin(), crossings.end(), isBefore);
+  findCrossings(lit, ray, crossings, [&](const auto& visit) { visitTriangles(lit, ray, visit); });
 }
 
 void findCrossings(const LitMesh& lit, const Ray& ray, std::span<const uint32_t> met, std::vector<Crossing>& crossings) {
-  crossings.clear();
-  for (const uint32_t triangle : met)
-    if (const auto crossing = crossTriangle(lit, triangle, ray)) crossings.push_back(*crossing);
-  std::sort(crossings.begin(), crossings.end(), isBefore);
+  findCrossings(lit, ray, crossings, [&](const auto& visit) { std::for_each(met.begin(), met.end(), visit); });
 }
 
 std::optional<Crossing> nearestCrossing(const LitMesh& lit, const Ray& ray) {

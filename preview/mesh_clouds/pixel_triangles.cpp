@@ -3,6 +3,8 @@
 #include "preview/mesh_clouds/pixel_triangles.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "core/portable_math.h"
 
@@ -39,27 +41,23 @@ PixelTriangles::Side PixelTriangles::sideOf(uint32_t from, uint32_t to, double y
   return {sense * ((b.x - a.x) * (y - a.y)), sense * (b.y - a.y), a.x};
 }
 
-void PixelTriangles::findRow(int y, Row& row) const {
-  row.met.clear();
-  row.begin.assign(size_t(width_) + 1, 0);
+PixelTriangles::Row PixelTriangles::row(int y) const {
+  Row row{std::vector<uint32_t>(size_t(width_) + 1), {}};
+  std::vector<std::pair<int, uint32_t>> met;  // columns and triangles
   for (const auto& [triangle, first, last] : rows_[size_t(y)]) {
     const auto& [a, b, c] = triangles_[triangle];
     const Side sides[] = {sideOf(a, b, y + 0.5), sideOf(b, c, y + 0.5), sideOf(c, a, y + 0.5)};
     for (int x = first; x <= last; ++x) {
       const double one = sides[0].at(x + 0.5), two = sides[1].at(x + 0.5), three = sides[2].at(x + 0.5);
       if (!(one >= 0 && two >= 0 && three >= 0) && !(one <= 0 && two <= 0 && three <= 0)) continue;
-      row.met.emplace_back(x, triangle);
-      ++row.begin[size_t(x) + 1];
+      met.emplace_back(x, triangle);
+      ++row.begin[size_t(x)];
     }
   }
-  for (size_t x = 0; x < size_t(width_); ++x) row.begin[x + 1] += row.begin[x];
-  row.triangles.resize(row.met.size());
-  for (size_t i = row.met.size(); i-- > 0;) {
-    // from the back, so that the end of a column becomes its beginning
-    row.triangles[--row.begin[size_t(row.met[i].first) + 1]] = row.met[i].second;
-  }
-  row.begin.erase(row.begin.begin());
-  row.begin.push_back(uint32_t(row.met.size()));
+  std::partial_sum(row.begin.begin(), row.begin.end(), row.begin.begin());  // the end of each column
+  row.triangles.resize(met.size());
+  for (size_t i = met.size(); i-- > 0;) row.triangles[--row.begin[size_t(met[i].first)]] = met[i].second;  // at last its beginning
+  return row;
 }
 
 }  // namespace cloudbake

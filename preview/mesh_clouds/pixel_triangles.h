@@ -18,15 +18,15 @@ class PixelTriangles {
     std::span<const uint32_t> at(int x) const {
       return std::span(triangles).subspan(begin[size_t(x)], begin[size_t(x) + 1] - begin[size_t(x)]);
     }
-    std::vector<uint32_t> begin, triangles;
-    std::vector<std::pair<int, uint32_t>> met;  ///< columns and triangles, while they are found
+    std::vector<uint32_t> begin;  ///< of each pixel's triangles, and the end of the last one's
+    std::vector<uint32_t> triangles;
   };
 
   /// Nothing if a vertex is not in front of the camera.
   static std::optional<PixelTriangles> of(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Camera& camera);
 
   /// Those that the rays of row `y` meet, in the order of the mesh. A ray through an edge meets both triangles of the edge.
-  void findRow(int y, Row& row) const;
+  Row row(int y) const;
 
  private:
   struct Place {

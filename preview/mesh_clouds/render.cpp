@@ -83,8 +83,7 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
   const auto pixels = places.size() == 1 ? PixelTriangles::of(lit.positions, lit.triangles, local) : std::nullopt;
   parallelFor(camera.height, [&](int y) {
     std::vector<Crossing> crossings;
-    PixelTriangles::Row row;
-    if (pixels) pixels->findRow(y, row);
+    const PixelTriangles::Row row = pixels ? pixels->row(y) : PixelTriangles::Row{};
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
       for (const Vec2 place : places) {
@@ -94,8 +93,8 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
         else
           findCrossings(lit, ray, crossings);
         dropRepeated(lit, crossings);
-        sum +=
-            colorAlong(crossings, view_extinction, colors, light, [&] { return sky ? sky->at(x, y) : skyColor(ray.direction, light.sky); });
+        const auto sky_color = [&] { return sky ? sky->at(x, y) : skyColor(ray.direction, light.sky); };
+        sum += colorAlong(crossings, view_extinction, colors, light, sky_color);
       }
       image.at(x, y) = sum / float(places.size());
     }

@@ -2,7 +2,7 @@
 //   node tests/web/command_line.mjs BUILD_NODE PROGRAM SOURCE
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { cpus, tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 const [built, program, source] = process.argv.slice(2);
@@ -49,6 +49,17 @@ try {
     const [native, here] = both(...words);
     demand(native === here, `cloudbake ${words.join(' ').replaceAll(source, '.')} does what the native program does`);
   }
+  // A script that Node loads first counts the threads that the launcher starts.
+  writeFileSync(join(empty, 'count.cjs'), `const threads = require('node:worker_threads');
+    threads.Worker = class extends threads.Worker {
+      constructor(file, options) { super(file, options); if (String(file).endsWith('/thread.mjs')) console.error('a thread'); }
+    };
+    require('node:module').syncBuiltinESMExports();`);
+  const threadsOf = count => spawnSync(process.execPath, ['--require', './count.cjs', join(installed, 'cli/cloudbake.mjs'), 'bake', sculpt,
+    '-q', '--threads', count, '-o', 'out.glb'], { cwd: empty, encoding: 'utf8' }).stderr.split('a thread').length - 1;
+  demand(threadsOf('1') === 0, 'a bake with one thread starts no other');
+  if (cpus().length > 1) demand(threadsOf('2') === 1, 'a bake with two threads starts one');
+
   const serve = run(command, 'view', 'cloud.glb', '--serve');
   demand(serve.status === 1 && serve.stderr.includes('not in the program for Node'), 'view --serve is refused by name');
 

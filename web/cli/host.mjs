@@ -7,7 +7,7 @@ import { MessageChannel, receiveMessageOnPort } from 'node:worker_threads';
 
 const windows = process.platform === 'win32';
 const PAGE = 65536, MOST = 2 ** 32 - PAGE;  // bytes of memory
-const MOST_THREADS = 16;                    // each takes some 20 MB
+const MOST_THREADS = 16;                    // each has a stack and an engine of its own
 const BROKEN_PIPE = 141;                    // the exit code
 const FIRST_FOLDER = 1 << 20;               // folders that are open have numbers from here
 const FIRST_VIRTUAL = 1 << 24;              // and so have pipes and memory
