@@ -137,7 +137,10 @@ std::optional<BakedCloud> perPrimitive(const Cloud& cloud, std::span<const Lobe>
 class FullCloud {
  public:
   explicit FullCloud(BakedMesh full)
-      : full_(std::move(full)), surface_(nearestSurface(full_.surface)), points_(spreadOverSurface(full_.surface, kComparedPoints)) {
+      : full_(std::move(full)),
+        surface_(nearestSurface(full_.surface)),
+        points_(spreadOverSurface(full_.surface, kComparedPoints)),
+        popping_(full_) {
     for (const SurfacePoint& point : points_) positions_.push_back(valueAt(point, full_.surface.positions));
     transmittances_.resize(points_.size() * lights_.size());
     parallelFor(points_.size(), [&](size_t i) {
@@ -148,6 +151,7 @@ class FullCloud {
   }
 
   const BakedMesh& mesh() const { return full_; }
+  const Popping& popping() const { return popping_; }
 
   LevelFigures figuresOf(const BakedMesh& level) const {
     const auto level_surface = nearestSurface(level.surface);
@@ -190,34 +194,41 @@ class FullCloud {
   std::vector<Vec3> positions_;
   const std::vector<Vec3> lights_ = bothSenses(sweepAxes(kComparedLights));
   std::vector<float> transmittances_;  // of points_ under each light
+  Popping popping_;
 };
 
 // Levels of `counts` vertices.
 std::vector<LevelAsset> levelsOf(const Cloud& cloud, std::span<const Lobe> lobes, std::span<const float> harmonics,
                                  const std::vector<size_t>& counts, const Settings& settings, BakeReport& report) {
   const std::vector<bool> held = heldVertices(cloud.sculpt, report.warnings);
-  const auto all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
-  const FullCloud full_cloud({cloud.surface, {lobes.begin(), lobes.end()}, report.info, {harmonics.begin(), harmonics.end()}});
-  std::vector<Level> levels;
-  std::vector<BakedMesh> meshes(counts.size());
-  for (size_t i = 0; i < counts.size(); ++i)
-    levels.push_back(levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), full_cloud.mesh(), meshes[i]));
-  const auto changes = popping(full_cloud.mesh(), meshes);
-  std::vector<LevelAsset> assets;
-  for (size_t i = 0; i < counts.size(); ++i) {
-    AssetInfo& info = meshes[i].info;
-    info.level = int(i + 1);
-    info.switch_pixels = switchPixels(changes[i]);
+  std::vector<std::vector<Triangle>> all_triangles;
+  std::optional<FullCloud> full_cloud;
+  // Simplification takes one thread, and does not wait for the other.
+  parallelFor(2, [&](int job) {
+    if (job == 0)
+      all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
+    else
+      full_cloud.emplace(BakedMesh{cloud.surface, {lobes.begin(), lobes.end()}, report.info, {harmonics.begin(), harmonics.end()}});
+  });
+  std::vector<LevelAsset> assets(counts.size());
+  std::vector<LevelFigures> figures(counts.size());
+  parallelFor(counts.size(), [&](size_t i) {
+    BakedMesh mesh;
+    const Level level = levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), full_cloud->mesh(), mesh);
+    mesh.info.level = int(i + 1);
+    mesh.info.switch_pixels = switchPixels(full_cloud->popping().changesBy(mesh));
     Warnings told;  // the full asset has them too
-    assets.push_back({levelFile(settings.output.file, i + 1),
-                      encodeGlb(levels[i].sculpt, levels[i].lobes_per_part, info, settings.output.gltf, told, meshes[i].harmonics)});
-    LevelFigures& figures = report.levels.emplace_back(full_cloud.figuresOf(meshes[i]));
-    figures.file = assets.back().file.string();
-    if (figures.vertices > counts[i])
-      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(figures.vertices) +
+    assets[i] = {levelFile(settings.output.file, i + 1),
+                 encodeGlb(level.sculpt, level.lobes_per_part, mesh.info, settings.output.gltf, told, mesh.harmonics)};
+    figures[i] = full_cloud->figuresOf(mesh);
+    figures[i].file = assets[i].file.string();
+  });
+  for (size_t i = 0; i < counts.size(); ++i)
+    if (figures[i].vertices > counts[i])
+      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(figures[i].vertices) +
                                                           " vertices, not " + std::to_string(counts[i]) +
                                                           ", because fewer would tear seams or borders, or ruin the shape");
-  }
+  std::ranges::move(figures, std::back_inserter(report.levels));
   return assets;
 }
 

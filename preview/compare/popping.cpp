@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/render.h"
 
@@ -39,6 +40,17 @@ Camera cameraFrom(const Box& box, float azimuth) {
   return camera;
 }
 
+// Means of 2 × 2 pixels.
+Image halved(const Image& image) {
+  Image half = blankImage(image.width / 2, image.height / 2);
+  parallelFor(half.height, [&](int y) {
+    for (int x = 0; x < half.width; ++x)
+      half.at(x, y) = (image.at(2 * x, 2 * y) / 4 + image.at(2 * x + 1, 2 * y) / 4) + image.at(2 * x, 2 * y + 1) / 4 +
+                      image.at(2 * x + 1, 2 * y + 1) / 4;
+  });
+  return half;
+}
+
 Image drawn(const BakedMesh& mesh, const Camera& camera, const Image* sky = nullptr) {
   LightSettings light = lightForSun(kSunAzimuth, kSunElevation);
   light.samples_per_side = 1;
@@ -48,31 +60,58 @@ Image drawn(const BakedMesh& mesh, const Camera& camera, const Image* sky = null
   return renderLobe(mesh, camera, light, sky);
 }
 
-// Linear colours, the same as they are shown, and in `shows` 1 where there is the mesh.
+// The sky around a cloud and its halvings, from the largest size to the smallest one: linear colours, and the same as they are shown.
+struct Skies {
+  std::vector<Image> colors, tones;
+};
+
+Skies skiesOf(Image sky) {
+  Skies skies;
+  for (int i = 0;; ++i) {
+    skies.tones.push_back(toneMap(sky));
+    skies.colors.push_back(std::move(sky));
+    if (i == kHalvings) return skies;
+    sky = halved(skies.colors.back());
+  }
+}
+
+// One size of a picture, with 1 in `shows` where there is the mesh.
 struct Picture {
   Image colors, tones;
   std::vector<uint8_t> shows;
 };
 
-// Rays that miss the mesh differ from those of the sky in their last bits.
-constexpr float kSeen = 1e-3F;
+// Only the columns between the first and the last one of a row that show the mesh are toned. The others are those of the sky.
+Image tonesOf(const Image& colors, const std::vector<uint8_t>& shows, const Image& sky) {
+  Image tones = sky;
+  parallelFor(colors.height, [&](int y) {
+    const auto row = std::span(shows).subspan(size_t(y) * size_t(colors.width), size_t(colors.width));
+    const int first = int(std::find(row.begin(), row.end(), 1) - row.begin());
+    int end = colors.width;
+    while (end > first && row[size_t(end - 1)] == 0) --end;
+    std::copy_n(&colors.pixels[size_t(y) * size_t(colors.width)] + first, end - first, &tones.at(0, y) + first);
+    toneRow(std::span(&tones.at(0, y) + first, size_t(end - first)));
+  });
+  return tones;
+}
 
-Picture pictureOf(const BakedMesh& mesh, const Camera& camera, const Image& sky) {
-  Picture picture{drawn(mesh, camera, &sky), {}, {}};
-  picture.tones = toneMap(picture.colors);
-  for (size_t i = 0; i < sky.pixels.size(); ++i) picture.shows.push_back(length(picture.colors.pixels[i] - sky.pixels[i]) > kSeen);
+Picture pictureOf(const BakedMesh& mesh, const Camera& camera, const Skies& skies) {
+  constexpr float kSeen = 1e-3F;  // of an opacity
+  const Image& sky = skies.colors[0];
+  Picture picture{drawn(mesh, camera, &sky), {}, std::vector<uint8_t>(sky.pixels.size())};
+  for (size_t i = 0; i < sky.pixels.size(); ++i) picture.shows[i] = length(picture.colors.pixels[i] - sky.pixels[i]) > kSeen;
+  picture.tones = tonesOf(picture.colors, picture.shows, skies.tones[0]);
   return picture;
 }
 
-Picture halved(const Picture& picture) {
-  const int width = picture.colors.width / 2, height = picture.colors.height / 2;
-  Picture half{blankImage(width, height), {}, std::vector<uint8_t>(size_t(width) * size_t(height))};
-  for (int y = 0; y < 2 * height; ++y)
-    for (int x = 0; x < 2 * width; ++x) {
-      half.colors.at(x / 2, y / 2) += picture.colors.at(x, y) / 4;
-      half.shows[size_t(y / 2) * size_t(width) + size_t(x / 2)] |= picture.shows[size_t(y) * 2 * size_t(width) + size_t(x)];
-    }
-  half.tones = toneMap(half.colors);
+// `half`: of the smaller picture's size, among the skies.
+Picture halved(const Picture& picture, const Image& half_sky) {
+  Picture half{halved(picture.colors), {}, std::vector<uint8_t>(half_sky.pixels.size())};
+  for (int y = 0; y < picture.colors.height; ++y)
+    for (int x = 0; x < picture.colors.width; ++x)
+      half.shows[size_t(y / 2) * size_t(half_sky.width) + size_t(x / 2)] |=
+          picture.shows[size_t(y) * size_t(picture.colors.width) + size_t(x)];
+  half.tones = tonesOf(half.colors, half.shows, half_sky);
   return half;
 }
 
@@ -90,23 +129,34 @@ float rmsBetween(const Picture& a, const Picture& b) {
 
 }  // namespace
 
-std::vector<std::vector<SizeChange>> popping(const BakedMesh& full, std::span<const BakedMesh> levels) {
-  std::vector<std::vector<SizeChange>> all(levels.size(), std::vector<SizeChange>(kHalvings + 1));
-  for (const float azimuth : kCameraAzimuths) {
-    const Camera camera = cameraFrom(drawnBox(full.surface), azimuth);
-    const Image sky = drawn({}, camera);
-    std::vector<Picture> of_full{pictureOf(full, camera, sky)};
-    for (int i = 0; i < kHalvings; ++i) of_full.push_back(halved(of_full.back()));
-    for (size_t level = 0; level < levels.size(); ++level) {
-      Picture picture = pictureOf(levels[level], camera, sky);
-      for (int i = 0; i <= kHalvings; ++i) {
-        SizeChange& change = all[level][size_t(i)];
-        change = {float(kLargestSize >> i), std::max(change.rms, rmsBetween(of_full[size_t(i)], picture))};
-        picture = halved(picture);
-      }
+struct Popping::Side {
+  Camera camera;
+  Skies skies;
+  std::vector<Picture> full;  // from the largest size to the smallest one
+};
+
+Popping::Popping(const BakedMesh& full) : sides_(std::size(kCameraAzimuths)) {
+  parallelFor(sides_.size(), [&](size_t i) {
+    Side& side = sides_[i];
+    side.camera = cameraFrom(drawnBox(full.surface), kCameraAzimuths[i]);
+    side.skies = skiesOf(drawn({}, side.camera));
+    side.full.push_back(pictureOf(full, side.camera, side.skies));
+    for (size_t half = 1; half <= kHalvings; ++half) side.full.push_back(halved(side.full.back(), side.skies.tones[half]));
+  });
+}
+
+Popping::~Popping() = default;
+
+std::vector<SizeChange> Popping::changesBy(const BakedMesh& level) const {
+  std::vector<SizeChange> changes(kHalvings + 1);
+  for (const Side& side : sides_) {
+    Picture picture = pictureOf(level, side.camera, side.skies);
+    for (size_t i = 0; i <= kHalvings; ++i) {
+      if (i > 0) picture = halved(picture, side.skies.tones[i]);
+      changes[i] = {float(kLargestSize >> i), std::max(changes[i].rms, rmsBetween(side.full[i], picture))};
     }
   }
-  return all;
+  return changes;
 }
 
 int switchPixels(std::span<const SizeChange> changes, float most) {

@@ -17,10 +17,21 @@ struct SizeChange {
   float rms = 0;     ///< of the 8-bit values of all pixels that show either mesh, on the side where it is larger
 };
 
-/// The changes for each level, from the largest size to the smallest one. The pictures are those of renderLobe, of two opposite sides, one
-/// lit from the front and one from behind. The largest size has one ray per pixel, so that it shows the change that no mean over a pixel
-/// makes smaller: that of all sizes above it.
-std::vector<std::vector<SizeChange>> popping(const BakedMesh& full, std::span<const BakedMesh> levels);
+/// The pictures of a full cloud, with which those of its levels are compared: of two opposite sides, one lit from the front and one from
+/// behind, drawn as by renderLobe.
+class Popping {
+ public:
+  explicit Popping(const BakedMesh& full);
+  ~Popping();
+
+  /// The changes by a level, from the largest size to the smallest one. The largest size has one ray per pixel, so that it shows the change
+  /// that no mean over a pixel makes smaller: that of all sizes above it.
+  std::vector<SizeChange> changesBy(const BakedMesh& level) const;
+
+ private:
+  struct Side;
+  std::vector<Side> sides_;
+};
 
 /// The largest size up to which no change is above `most`, with two digits, rounded down; 0 if there is none. Between two sizes the
 /// change is a power of the size. If it is not above `most` at the largest size, the answer is kLargestSwitch.

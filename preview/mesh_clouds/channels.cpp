@@ -47,7 +47,8 @@ DepthRange defaultDepthRange(std::span<const Instance> instances) { return {0, k
 
 Image4 renderChannels(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                       const ChannelSettings& settings) {
-  const LitMesh lit = lightMeshes(instances, light);
+  LitMesh lit = lightMeshes(instances, light);
+  prepareForRays(lit, light.rays);
   const DepthRange range = settings.depth_range.value_or(defaultDepthRange(instances));
   Camera local = camera;
   local.look_from = lit.toFrame(camera.look_from);

@@ -289,7 +289,6 @@ LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& li
   if (haveOwnColors(instances, light))
     for (const Instance& instance : instances)
       if (instance.is_seen) std::ranges::copy(ownColors(*instance.mesh), std::back_inserter(lit.colors));
-  if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles, light.rays);
   return lit;
 }
 
@@ -299,8 +298,11 @@ LitMesh shadedMesh(const BakedMesh& mesh, std::span<const Shade> shades) {
   for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(p));
   lit.shades.assign(shades.begin(), shades.end());
   lit.triangles = mesh.surface.triangles;
-  if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles);
   return lit;
+}
+
+void prepareForRays(LitMesh& lit, RaysToCome rays) {
+  if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles, rays);
 }
 
 std::vector<Shade> transmittanceShades(std::span<const float> to_sun, std::span<const float> to_sky, float extinction) {

@@ -117,7 +117,7 @@ struct LitMesh {
   std::vector<Triangle> triangles;
   Vec3 center;
   float size = 1;                        ///< world units per unit of the frame
-  std::shared_ptr<const RayScene> rays;  ///< none if there are no triangles
+  std::shared_ptr<const RayScene> rays;  ///< once prepareForRays made it
 
   Vec3 toFrame(Vec3 world) const { return (world - center) / size; }
 };
@@ -129,12 +129,15 @@ std::vector<Vec3> worldPositions(const Instance& instance);
 /// Throws std::invalid_argument if a mesh does not have one lobe per vertex, or some but not all shares of the sun, or if a transform
 /// cannot be inverted.
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light);
-/// The same, not prepared for rays and without colours.
+/// The same without colours.
 LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& light);
 
 /// One mesh in its own place, in the same frame, with the given shades; lobes and normals are not read. Throws std::invalid_argument if
 /// there is not one shade per vertex.
 LitMesh shadedMesh(const BakedMesh& mesh, std::span<const Shade> shades);
+
+/// Must come before the first ray to a mesh with triangles.
+void prepareForRays(LitMesh& lit, RaysToCome rays = RaysToCome::kMany);
 
 /// R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky) of lengths per vertex: the truth that a lobe approximates. Throws std::invalid_argument if the
 /// numbers of lengths differ.

@@ -70,7 +70,7 @@ Vec3 colorAlong(const std::vector<Crossing>& crossings, float view_extinction, c
 }
 
 // `extinction` is the mesh's σ per world unit.
-Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, const LightSettings& light, const Image* sky = nullptr) {
+Image renderLit(LitMesh lit, float extinction, const Camera& camera, const LightSettings& light, const Image* sky = nullptr) {
   const float view_extinction = light.view_extinction * extinction * lit.size;
   Camera local = camera;
   local.look_from = lit.toFrame(camera.look_from);
@@ -81,10 +81,15 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
   Image image = blankImage(camera.width, camera.height);
   const CameraRays rays(local);
   const auto pixels = places.size() == 1 ? PixelTriangles::of(lit.positions, lit.triangles, local) : std::nullopt;
+  if (!pixels) prepareForRays(lit, light.rays);
   parallelFor(camera.height, [&](int y) {
     std::vector<Crossing> crossings;
     const PixelTriangles::Row row = pixels ? pixels->row(y) : PixelTriangles::Row{};
     for (int x = 0; x < camera.width; ++x) {
+      if (pixels && sky && row.at(x).empty()) {
+        image.at(x, y) = sky->at(x, y);
+        continue;
+      }
       Vec3 sum;
       for (const Vec2 place : places) {
         const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
@@ -113,9 +118,13 @@ Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const C
   return renderLit(shadedMesh(mesh, shades), worldExtinction({&mesh, {}}, light), camera, light);
 }
 
-Image toneMap(Image image, float exposure) {
+void toneRow(std::span<Vec3> colors, float exposure) {
   static_assert(sizeof(Vec3) == 3 * sizeof(float));
-  parallelFor(image.height, [&](int y) { encodeTones(&image.at(0, y).x, 3 * size_t(image.width), exposure); });
+  if (!colors.empty()) encodeTones(&colors[0].x, 3 * colors.size(), exposure);
+}
+
+Image toneMap(Image image, float exposure) {
+  parallelFor(image.height, [&](int y) { toneRow(std::span(&image.at(0, y), size_t(image.width)), exposure); });
   return image;
 }
 

@@ -24,6 +24,8 @@ Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const C
 
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.
 Image toneMap(Image image, float exposure = 1);
+/// The same for a row of colours.
+void toneRow(std::span<Vec3> colors, float exposure = 1);
 
 /// The inverse of the sRGB transfer function: values of 0 … 1 of a picture file to linear ones.
 Image linearOfSrgb(Image srgb);

@@ -9,6 +9,13 @@
 namespace cloudbake {
 namespace {
 
+std::vector<std::vector<SizeChange>> popping(const BakedMesh& full, std::span<const BakedMesh> levels) {
+  const Popping of_full(full);
+  std::vector<std::vector<SizeChange>> changes;
+  for (const BakedMesh& level : levels) changes.push_back(of_full.changesBy(level));
+  return changes;
+}
+
 TEST(Popping, TheSameMeshChangesNothing) {
   const BakedMesh ball = bakedBall(1, {}, 3);
   const auto changes = popping(ball, {&ball, 1});
