@@ -66,6 +66,12 @@ const CommandSpec kCommands[] = {
      "draw the shadow that a baked asset casts under a sun, as a grey PNG for decals and light cookies",
      "Examples:\n  cloudbake shadow cloud.glb -o shadow.png\n  cloudbake shadow cloud.glb --sun 0,90 --size 512 -o noon.png", "FILE",
      runShadow, "file to write; its frame is written beside it, as .json", ".png"},
+    {kImpostor, "impostor", "ASSET.glb", "baked asset to take pictures of",
+     "make pictures of a baked asset from all sides that any light can shine on, for clouds that are far away",
+     "Examples:\n  cloudbake impostor cloud.glb -o far\n  cloudbake impostor cloud.glb --views 12 --frame 128 -o far\n"
+     "  cloudbake impostor cloud.glb --of mesh --half-lambert 0.3 -o far",
+     "DIR", runImpostor, "folder to write the files to", "",
+     "impostor.glb impostor_direction.png impostor_rest.png impostor_six_way_1.png impostor_six_way_2.png"},
     {kCheck, "check", "ASSET.glb", "baked asset to check",
      "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"

@@ -138,6 +138,8 @@ struct AssetSeal {
   std::optional<std::array<float, kSketchSize>> harmonics{};  ///< likewise of the coefficients, if there are any
 };
 
+struct Impostor;  // core/impostor.h
+
 /// The contents of `asset.extras.cloudbake`: information for people and tools. Decoding the lobes does not need it.
 struct AssetInfo {
   std::string layout = "lobe-uv";                 ///< name of the layout (docs/asset_format.md)
@@ -172,6 +174,7 @@ struct BakedMesh {
   std::vector<float>
       harmonics;  ///< #V × (info.harmonic_order + 1)² coefficients of T at info.extinction (core/harmonics.h) in scene axes, or empty
   std::vector<Vec3> colors{};  ///< #V base colours of the sculpt, linear, 0 … 1; empty: white, or not read
+  std::shared_ptr<const Impostor> impostor{};  ///< is drawn in place of the triangles, which are then the cloud's box without lobes
 };
 
 /// The changes of --repair.

@@ -95,6 +95,12 @@ std::string encodeGreyPng(int width, int height, const std::vector<uint8_t>& gre
   return png;
 }
 
+std::string encodeRgbaPng(int width, int height, const std::vector<uint8_t>& rgba) {
+  if (width < 1 || height < 1 || rgba.size() != 4 * size_t(width) * size_t(height))
+    throw std::invalid_argument("encodeRgbaPng: a picture needs width·height pixels, and at least one");
+  return pngOf(width, height, 4, rgba);
+}
+
 std::string encodeJpeg(const Image& image, int quality) {
   const std::vector<uint8_t> bytes = rgbBytes(image);
   std::string jpeg;

@@ -21,6 +21,9 @@ std::string encodePng(const Image& tone_mapped_srgb);
 /// Latin letters. Throws as encodePng does.
 std::string encodeGreyPng(int width, int height, const std::vector<uint8_t>& grey, std::string_view keyword, std::string_view text);
 
+/// The bytes of a PNG with 8 bits per channel of R, G, B and A, row by row from the top. Throws as encodePng does.
+std::string encodeRgbaPng(int width, int height, const std::vector<uint8_t>& rgba);
+
 /// The bytes of a baseline JPEG of the same values, for pages where size counts. `quality` is 1 to 100; up to 90, colours have half the
 /// resolution. Throws as encodePng does.
 std::string encodeJpeg(const Image& tone_mapped_srgb, int quality);

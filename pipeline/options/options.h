@@ -24,7 +24,8 @@ enum Command : unsigned {
   kCheck = 32,
   kView = 64,
   kShader = 128,
-  kShadow = 256
+  kShadow = 256,
+  kImpostor = 512
 };
 
 /// Where an option is offered, as bits.

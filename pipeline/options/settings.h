@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bake/mesh/repair.h"
+#include "core/impostor.h"
 #include "core/memory_budget.h"
 #include "core/types.h"
 #include "io/file/read_settings.h"
@@ -178,6 +179,14 @@ struct ShadowPictureSettings {
   std::optional<float> extinction;  ///< σ per world unit; unset: that of the asset
 };
 
+/// The atlas that `impostor` writes.
+struct ImpostorSettings {
+  int views = 8, frame = 64;  ///< frames to a side of the atlas, and pixels to a side of a frame
+  ImpostorOf of = ImpostorOf::kVolume;
+  float half_lambert = 1;  ///< of an impostor of the mesh: f of lerp(f, 1, n·l/2 + ½)
+  bool six_way = false;
+};
+
 /// The largest errors against exact chords that an asset may have.
 struct ErrorBounds {
   std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
@@ -236,6 +245,7 @@ struct Settings {
   OutputSettings output;
   PictureSettings picture;
   ShadowPictureSettings shadow;
+  ImpostorSettings impostor;
   std::optional<std::filesystem::path> scene;  ///< which a bake or a kit is for, or which is drawn
   JudgeSettings judge;
   BatchSettings batch;

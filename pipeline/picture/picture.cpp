@@ -16,6 +16,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/asset/own_colors.h"
+#include "io/gltf/impostor/impostor_file.h"
 #include "io/image/animated_png.h"
 #include "io/image/exr.h"
 #include "io/image/image.h"
@@ -95,7 +96,9 @@ BakedMesh readMesh(const std::filesystem::path& file, uint64_t memory_limit, War
   ReadSettings read;
   read.memory_limit = memory_limit;
   requireMemoryForFile(file, memory_limit);
-  return decodeColoredGlb(file, readFileBytes(file), warnings, read);
+  const std::string bytes = readFileBytes(file);
+  if (isImpostor(bytes)) return boxWithImpostor(decodeImpostor(file, bytes, memory_limit));
+  return decodeColoredGlb(file, bytes, warnings, read);
 }
 
 // By what the meshes of a scenery are found.
@@ -186,7 +189,7 @@ void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Wa
 Instance placed(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
   Instance instance{&meshOf(cloud, scenery, warnings), cloud.to_world};
   if (cloud.levels) setLevels(cloud, instance, scenery, warnings);
-  if (!drawsShadows(scenery.scene)) return instance;
+  if (!drawsShadows(scenery.scene) || instance.mesh->impostor) return instance;
   const auto [found, is_new] = scenery.casters.try_emplace(instance.mesh);
   if (is_new) found->second = shadowCasterOf(*instance.mesh, warnings).value_or(ShadowCaster{});
   if (!found->second.fractions.empty()) instance.caster = &found->second;

@@ -280,7 +280,7 @@ LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& li
   }
   LitMesh lit = frameOf(box);
   for (const Instance& instance : instances)
-    if (instance.is_seen) addInstance(instance, light, lit);
+    if (instance.is_seen && !instance.mesh->impostor) addInstance(instance, light, lit);
   return lit;
 }
 
@@ -288,7 +288,7 @@ LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& li
   LitMesh lit = placeMeshes(instances, light);
   if (haveOwnColors(instances, light))
     for (const Instance& instance : instances)
-      if (instance.is_seen) std::ranges::copy(ownColors(*instance.mesh), std::back_inserter(lit.colors));
+      if (instance.is_seen && !instance.mesh->impostor) std::ranges::copy(ownColors(*instance.mesh), std::back_inserter(lit.colors));
   return lit;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "preview/mesh_clouds/impostor.h"
 #include "preview/mesh_clouds/raster.h"
 #include "preview/shading_math.h"
 
@@ -38,7 +39,9 @@ Chain publishedChain(std::span<const Instance> instances, const Camera& camera, 
                      const DepthRange& range, StepsKept kept) {
   ChannelSettings channels = settings.channels;
   channels.depth_range = range;
-  Chain chain(renderChannels(instances, camera, light, channels), kept);
+  Image4 drawn = renderChannels(instances, camera, light, channels);
+  addImpostors(drawn, instances, camera, light, range);
+  Chain chain(std::move(drawn), kept);
   const int width = (camera.width + settings.divisor - 1) / settings.divisor,
             height = (camera.height + settings.divisor - 1) / settings.divisor;
   chain.add("downsampled", [&](const Image4& last) { return resampleBilinear(last, width, height, settings.downsample_mean); });
@@ -49,7 +52,9 @@ Chain publishedChain(std::span<const Instance> instances, const Camera& camera, 
 
 Chain paintedChain(std::span<const Instance> instances, const Camera& camera, const LightSettings& light, const PaintedSteps& settings,
                    const DepthRange& range, StepsKept kept) {
-  Chain chain(rasterChannels(placeMeshes(instances, light), camera, range), kept);
+  Image4 drawn = rasterChannels(placeMeshes(instances, light), camera, range);
+  addImpostors(drawn, instances, camera, light, range);
+  Chain chain(std::move(drawn), kept);
   chain.add("depth_spread", [&](Image4 last) { return spreadDepth(std::move(last), settings.depth_spread); });
   chain.add("softened", [&](Image4 last) { return soften(std::move(last), settings.soften); });
   return chain;

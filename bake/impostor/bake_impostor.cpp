@@ -1,0 +1,471 @@
+#include "bake/impostor/bake_impostor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "bake/lobe/fit_lobe.h"
+#include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_samples.h"
+#include "core/lobe_lighting.h"
+#include "core/parallel.h"
+#include "core/portable_math.h"
+#include "core/ray_scene.h"
+#include "core/surface_points.h"
+#include "core/vertex_normals.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kRaysPerSide = 2, kNodes = 4;  // rays to a side of a texel, places per ray at which the light is taken
+constexpr float kLeastOpacity = 1.0F / 512;  // half of a step of what is stored
+
+/// A frame of the atlas.
+struct AtlasFrame {
+  int i = 0, j = 0;
+  FrameAxes axes;
+};
+AtlasFrame atlasFrame(const ImpostorInfo& info, int number) {
+  const int i = number % info.views, j = number / info.views;
+  return {i, j, frameAxes(frameDirection(i, j, info.views))};
+}
+
+// A ray of a texel, away from the eye, that begins on the near side of the ball.
+Ray rayOf(const ImpostorInfo& info, const AtlasFrame& frame, int x, int y, int ray) {
+  const auto place = [&](int texel, int part) {
+    return (2 * (float(texel) + (float(part) + 0.5F) / kRaysPerSide) / float(info.frame) - 1) * info.radius;
+  };
+  const float right = place(x, ray % kRaysPerSide), up = -place(y, ray / kRaysPerSide);
+  return {info.center + frame.axes.right * right + frame.axes.up * up + frame.axes.to_eye * info.radius, -frame.axes.to_eye};
+}
+
+/// What is in a row of texels of a frame; rows are put together in order.
+struct RowOfTexels {
+  SeenTexels seen;
+  std::vector<Vec3> places;    // at which the light is taken: kRaysPerSide² · kNodes of each texel
+  std::vector<float> weights;  // of these, with the sum 1 for each texel
+};
+
+// The rows of all frames, one after the other.
+template <class Fill>
+std::vector<RowOfTexels> rowsOf(const ImpostorInfo& info, int first, int count, const Fill& fill) {
+  std::vector<RowOfTexels> rows(size_t(count) * size_t(info.frame));
+  parallelFor(rows.size(), [&](size_t row) {
+    const AtlasFrame frame = atlasFrame(info, first + int(row) / info.frame);
+    const int y = int(row) % info.frame;
+    const size_t start = (size_t(frame.j * info.frame + y) * size_t(info.views) + size_t(frame.i)) * size_t(info.frame);
+    for (int x = 0; x < info.frame; ++x) fill(rows[row], uint32_t(start + size_t(x)), frame, x, y);
+  });
+  return rows;
+}
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+SeenTexels joined(const std::vector<RowOfTexels>& rows) {
+  SeenTexels all;
+  for (const RowOfTexels& row : rows) {
+    append(all.texels, row.seen.texels);
+    append(all.opacity, row.seen.opacity);
+    append(all.depth, row.seen.depth);
+    append(all.light, row.seen.light);
+  }
+  return all;
+}
+
+/// The fractions of a field along rays.
+class FieldMarch {
+ public:
+  FieldMarch(const CoverageField& field, float view_extinction)
+      : field_(field), per_step_(view_extinction * float(field.frame.voxel_size)) {}
+
+  /// The opacity of a ray, and the distances of `nodes`, each of which is in the middle of an equal part of the opacity.
+  float along(const Ray& ray, float most, std::span<float> nodes) const {
+    const auto voxel = float(field_.frame.voxel_size);
+    const Vec3 origin = field_.frame.toIndex(ray.origin) - Vec3{float(field_.first[0]), float(field_.first[1]), float(field_.first[2])};
+    float enter = 0, leave = most / voxel;
+    const std::array<float, 3> from{origin.x, origin.y, origin.z}, along{ray.direction.x, ray.direction.y, ray.direction.z};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const float low = -from[axis] / along[axis], high = (float(field_.cells[axis] - 1) - from[axis]) / along[axis];
+      enter = std::max(enter, std::min(low, high));
+      leave = std::min(leave, std::max(low, high));
+    }
+    if (!(enter < leave)) return 0;
+    const int steps = std::max(1, int(leave - enter));
+    const float step = (leave - enter) / float(steps);
+    thread_local std::vector<float> passed;  // what comes through from the end of each step
+    passed.clear();
+    float depth = 0;
+    for (int s = 0; s < steps; ++s) {
+      depth += fractionAt(origin + ray.direction * (enter + (float(s) + 0.5F) * step));
+      passed.push_back(portableExp(-depth * per_step_ * step));
+    }
+    const float opacity = 1 - passed.back();
+    int s = 0;
+    for (size_t n = 0; n < nodes.size(); ++n) {
+      const float wanted = 1 - opacity * (float(n) + 0.5F) / float(nodes.size());
+      while (s + 1 < steps && passed[size_t(s)] > wanted) ++s;
+      const float before = s > 0 ? passed[size_t(s - 1)] : 1, after = passed[size_t(s)];
+      const float within = before > after ? (before - wanted) / (before - after) : 0.5F;
+      nodes[n] = (enter + (float(s) + within) * step) * voxel;
+    }
+    return opacity;
+  }
+
+ private:
+  float fractionAt(Vec3 p) const {
+    const auto cell = [](float at, int cells) { return std::clamp(int(at), 0, std::max(0, cells - 2)); };
+    const int i = cell(p.x, field_.cells[0]), j = cell(p.y, field_.cells[1]), k = cell(p.z, field_.cells[2]);
+    const auto row = size_t(field_.cells[0]), plane = row * size_t(field_.cells[1]);
+    const float* low = &field_.fractions[size_t(k) * plane + size_t(j) * row + size_t(i)];
+    return std::clamp(trilinear(low, row, plane, p.x - float(i), p.y - float(j), p.z - float(k)), 0.0F, 1.0F);
+  }
+
+  const CoverageField& field_;
+  float per_step_;
+};
+
+// S(σℓ) with the phase of each octave.
+struct ScatteredTerms {
+  std::array<float, kMostLightOctaves + 1> weights{}, extinctions{};
+  int count = 1;
+  ScatteredTerms(const VolumeLight& light, float extinction, float cosine) : count(light.octaves.count + 1) {
+    float weight = 1, sum = 0, asymmetry = light.asymmetry;
+    for (size_t i = 0; i < size_t(count); ++i) {
+      weights[i] = weight * (asymmetry == 0 ? 1 : phaseOf(asymmetry, cosine));
+      extinctions[i] = extinction;
+      sum += weight;
+      weight *= light.octaves.contribution, extinction *= light.octaves.extinction, asymmetry *= light.octaves.eccentricity;
+    }
+    for (float& w : weights) w /= sum;
+  }
+  float at(float length) const {
+    float sum = 0;
+    for (size_t i = 0; i < size_t(count); ++i) sum += weights[i] * portableExp(-extinctions[i] * length);
+    return sum;
+  }
+};
+
+}  // namespace
+
+SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const VolumeFrames& volume, std::span<const Vec3> axes) {
+  constexpr size_t kRays = kRaysPerSide * kRaysPerSide, kPlaces = kRays * kNodes;
+  const FieldMarch march(volume.field.coverage, volume.light.view_extinction * info.extinction);
+  const auto rows = rowsOf(info, first, count, [&](RowOfTexels& row, uint32_t texel, const AtlasFrame& frame, int x, int y) {
+    std::array<float, kPlaces> distances{};
+    std::array<float, kRays> opacities{};
+    float sum = 0, depth = 0;
+    for (size_t r = 0; r < kRays; ++r) {
+      const auto nodes = std::span(distances).subspan(r * kNodes, kNodes);
+      sum += opacities[r] = march.along(rayOf(info, frame, x, y, int(r)), 2 * info.radius, nodes);
+    }
+    if (sum / kRays < kLeastOpacity) return;
+    for (size_t r = 0; r < kRays; ++r)
+      for (size_t n = 0; n < kNodes; ++n) {
+        const float weight = opacities[r] / (sum * kNodes), distance = distances[r * kNodes + n];
+        const Ray ray = rayOf(info, frame, x, y, int(r));
+        row.places.push_back(ray.origin + ray.direction * distance);
+        row.weights.push_back(weight);
+        depth += weight * distance;
+      }
+    row.seen.texels.push_back(texel);
+    row.seen.opacity.push_back(sum / kRays);
+    row.seen.depth.push_back(depth / (2 * info.radius));
+  });
+  SeenTexels seen = joined(rows);
+  std::vector<Vec3> places;
+  std::vector<float> weights;
+  for (const RowOfTexels& row : rows) append(places, row.places), append(weights, row.weights);
+  const size_t lights = 2 * axes.size();
+  seen.light.resize(seen.texels.size() * lights);
+  const size_t row_of_atlas = size_t(info.views) * size_t(info.frame);
+  std::vector<Vec3> to_eyes;  // of each frame's row of the atlas
+  const auto to_eye = [&](uint32_t texel) {
+    const size_t x = texel % row_of_atlas, y = texel / row_of_atlas;
+    return frameDirection(int(x) / info.frame, int(y) / info.frame, info.views);
+  };
+  sweepLengths(places, axes, volume.field, volume.ray_length, [&](size_t first_axis, std::span<const float> lengths) {
+    for (size_t row = 0; row < lengths.size() / std::max<size_t>(1, places.size()); ++row) {
+      const size_t light = 2 * first_axis + row;
+      const Vec3 direction = light % 2 == 0 ? axes[light / 2] : -axes[light / 2];
+      const auto own = lengths.subspan(row * places.size(), places.size());
+      std::optional<ScatteredTerms> terms;
+      for (size_t t = 0; t < seen.texels.size(); ++t) {
+        if (!terms || volume.light.asymmetry != 0) terms.emplace(volume.light, info.extinction, -dot(to_eye(seen.texels[t]), direction));
+        float sum = 0;
+        for (size_t p = t * kPlaces; p < (t + 1) * kPlaces; ++p) sum += weights[p] * terms->at(own[p]);
+        seen.light[t * lights + light] = sum;
+      }
+    }
+  });
+  return seen;
+}
+
+SeenTexels seenOfMesh(const ImpostorInfo& info, int first, int count, const MeshFrames& frames, std::span<const Vec3> axes) {
+  constexpr int kRays = kRaysPerSide * kRaysPerSide;
+  const SurfaceMesh& surface = frames.mesh.surface;
+  const std::vector<Vec3> lights = bothSenses(axes);
+  const std::vector<Vec3> own = surface.normals.empty() ? vertexNormals(surface.positions, surface.triangles) : std::vector<Vec3>();
+  const std::vector<Vec3>& normals = surface.normals.empty() ? own : surface.normals;
+  std::vector<Vec3> places;  // in the ball's frame, for rays in floats
+  for (const Vec3& p : surface.positions) places.push_back((p - info.center) / info.radius);
+  const RayScene scene(places, surface.triangles);
+  const auto rows = rowsOf(info, first, count, [&](RowOfTexels& row, uint32_t texel, const AtlasFrame& frame, int x, int y) {
+    std::vector<float> light(lights.size());
+    float hits = 0, depth = 0;
+    for (int r = 0; r < kRays; ++r) {
+      const Ray ray = rayOf(info, frame, x, y, r);
+      const Ray local{(ray.origin - info.center) / info.radius + frame.axes.to_eye * 0.01F, ray.direction};
+      std::optional<SurfacePoint> nearest;
+      float distance = INFINITY;
+      scene.forHits(local, [&](const RayHit& hit) {
+        const Triangle& t = surface.triangles[hit.triangle];
+        const Vec3 a = places[t[0]], e = places[t[1]] - a, f = places[t[2]] - a, s = local.origin - a, d = local.direction;
+        const Vec3 p = cross(d, f), q = cross(s, e);
+        const float determinant = dot(e, p);
+        if (determinant == 0) return;
+        const float u = std::clamp(dot(s, p) / determinant, 0.0F, 1.0F), v = std::clamp(dot(d, q) / determinant, 0.0F, 1 - u);
+        const float away = dot(f, q) / determinant;
+        if (!(away < distance)) return;
+        distance = away;
+        nearest = SurfacePoint{t, {1 - u - v, u, v}};
+      });
+      if (!nearest) continue;
+      ++hits;
+      depth += distance - 0.01F;
+      const Vec3 normal = normalAt(*nearest, normals);
+      for (size_t l = 0; l < lights.size(); ++l)
+        light[l] += blendedTransmittance(*nearest, frames.mesh.lobes, lights[l], frames.mesh.info.shape, info.extinction) *
+                    surfaceFactor(normal, lights[l], frames.half_lambert);
+    }
+    if (hits == 0) return;
+    for (const float l : light) row.seen.light.push_back(l / hits);
+    row.seen.texels.push_back(texel);
+    row.seen.opacity.push_back(hits / kRays);
+    row.seen.depth.push_back(depth / hits / 2);
+  });
+  return joined(rows);
+}
+
+std::pair<Vec3, float> ballAround(std::span<const Vec3> points) {
+  if (points.empty()) return {};
+  constexpr int kSteps = 400;
+  Vec3 center = points[0];
+  const auto farthest = [&] {
+    return *std::max_element(points.begin(), points.end(),
+                             [&](Vec3 a, Vec3 b) { return dot(a - center, a - center) < dot(b - center, b - center); });
+  };
+  for (int step = 1; step <= kSteps; ++step) center += (farthest() - center) / float(step + 1);
+  return {center, length(farthest() - center)};
+}
+
+// --- Fit ---
+
+namespace {
+
+// Where the light is darkest the bulk is.
+std::vector<Lobe> startsOf(std::span<const float> light, std::span<const Vec3> directions, LobeShape shape, float extinction) {
+  std::vector<Lobe> starts(light.size() / directions.size());
+  parallelFor(starts.size(), [&](size_t i) {
+    const auto own = light.subspan(i * directions.size(), directions.size());
+    Vec3 sum;
+    float least = 1;
+    for (size_t l = 0; l < own.size(); ++l) sum += directions[l] * own[l], least = std::min(least, own[l]);
+    const float depth = -portableLog(std::max(least, 1e-3F)) / extinction - shape.bias;
+    starts[i] = {normalized(-sum).value_or(Vec3{0, -1, 0}), std::max(depth, 0.1F / extinction)};
+  });
+  return starts;
+}
+
+FitSettings fitSettings(LobeShape shape, float extinction) {
+  FitSettings fit;
+  fit.shape = shape;
+  fit.extinctions = {extinction};
+  return fit;
+}
+
+}  // namespace
+
+std::vector<Lobe> fitTexels(std::span<const float> light, const ImpostorLights& lights, LobeShape shape, float extinction) {
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  return fitLobes(startsOf(light, directions, shape, extinction), {directions, {}, lights.weights, light}, fitSettings(shape, extinction));
+}
+
+LobeShape fitTexelShape(std::span<const float> light, const ImpostorLights& lights, LobeShape start, float extinction, size_t most) {
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  const size_t texels = light.size() / directions.size(), count = std::min(texels, most);
+  std::vector<float> some;
+  for (size_t i = 0; i < count; ++i) {
+    const auto row = light.subspan((i * texels + texels / 2) / count % std::max<size_t>(1, texels) * directions.size(), directions.size());
+    some.insert(some.end(), row.begin(), row.end());
+  }
+  ShapeSearch search;
+  search.bias = true;
+  search.first_step = 0.5F;
+  search.vertices = count;
+  return fitShape(startsOf(some, directions, start, extinction), {directions, {}, lights.weights, some}, fitSettings(start, extinction),
+                  search);
+}
+
+double TexelError::rms() const { return weight > 0 ? std::sqrt(squares / weight) : 0; }
+
+TexelError errorOfTexels(const SeenTexels& seen, std::span<const Lobe> lobes, const ImpostorLights& lights, LobeShape shape,
+                         float extinction) {
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  TexelError error;
+  for (size_t t = 0; t < lobes.size(); ++t)
+    for (size_t l = 0; l < directions.size(); ++l) {
+      const double difference = lobeTransmittance(lobes[t], directions[l], shape, extinction) - seen.light[t * directions.size() + l];
+      const double weight = double(seen.opacity[t]) * double(lights.weights[l]);
+      error.squares += weight * difference * difference;
+      error.weight += weight;
+    }
+  return error;
+}
+
+// --- The atlas ---
+
+namespace {
+
+float inSteps(float value) { return std::round(std::clamp(value, 0.0F, 1.0F) * 255) / 255; }
+
+}  // namespace
+
+void storeTexels(const SeenTexels& seen, std::span<const Lobe> lobes, Impostor& impostor) {
+  for (size_t t = 0; t < seen.texels.size(); ++t) {
+    const Vec3 o = lobes[t].direction;
+    impostor.direction[0].pixels[seen.texels[t]] = {inSteps(o.x * 0.5F + 0.5F), inSteps(o.y * 0.5F + 0.5F), inSteps(o.z * 0.5F + 0.5F)};
+    const float thickness = impostor.info.thickest > 0 ? lobes[t].thickness / impostor.info.thickest : 0;
+    impostor.rest[0].pixels[seen.texels[t]] = {inSteps(std::sqrt(thickness)), inSteps(seen.opacity[t]), inSteps(seen.depth[t])};
+  }
+}
+
+// Pull and push: means of four texels by opacity, over and over, then back to what is empty (Gortler and others, "The Lumigraph", 1996).
+void fillEmptyTexels(Impostor& impostor) {
+  const int size = impostor.info.frame, views = impostor.info.views;
+  parallelFor(size_t(views) * size_t(views), [&](size_t frame) {
+    struct Texel {
+      Vec3 direction;
+      float thickness = 0, depth = 0, weight = 0;
+    };
+    struct Level {
+      int size = 0;
+      std::vector<Texel> texels;
+      Texel& at(int x, int y) { return texels[size_t(y) * size_t(size) + size_t(x)]; }
+    };
+    const int left = int(frame) % views * size, top = int(frame) / views * size;
+    std::vector<Level> levels{{size, std::vector<Texel>(size_t(size) * size_t(size))}};
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const Vec3 rest = impostor.rest[0].at(left + x, top + y);
+        if (rest.y > 0) levels[0].at(x, y) = {impostor.direction[0].at(left + x, top + y), rest.x, rest.z, 1};
+      }
+    while (levels.back().size > 1) {
+      Level& fine = levels.back();
+      Level coarse{(fine.size + 1) / 2, {}};
+      coarse.texels.resize(size_t(coarse.size) * size_t(coarse.size));
+      for (int y = 0; y < fine.size; ++y)
+        for (int x = 0; x < fine.size; ++x) {
+          const Texel& from = fine.at(x, y);
+          Texel& to = coarse.at(x / 2, y / 2);
+          to.direction += from.direction * from.weight, to.thickness += from.thickness * from.weight;
+          to.depth += from.depth * from.weight, to.weight += from.weight;
+        }
+      for (Texel& texel : coarse.texels)
+        if (texel.weight > 0) {
+          texel.direction = texel.direction / texel.weight, texel.thickness /= texel.weight, texel.depth /= texel.weight;
+          texel.weight = 1;
+        }
+      levels.push_back(std::move(coarse));
+    }
+    for (size_t level = levels.size() - 1; level-- > 0;)
+      for (int y = 0; y < levels[level].size; ++y)
+        for (int x = 0; x < levels[level].size; ++x)
+          if (Texel& texel = levels[level].at(x, y); texel.weight == 0) texel = levels[level + 1].at(x / 2, y / 2);
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        Vec3& rest = impostor.rest[0].at(left + x, top + y);
+        if (rest.y > 0) continue;
+        const Texel& texel = levels[0].at(x, y);
+        impostor.direction[0].at(left + x, top + y) = {inSteps(texel.direction.x), inSteps(texel.direction.y), inSteps(texel.direction.z)};
+        rest = {inSteps(texel.thickness), 0, inSteps(texel.depth)};
+      }
+  });
+}
+
+// --- Six-way light maps ---
+
+namespace {
+
+constexpr size_t kSix = 6;
+
+std::array<float, kSix> sixWeights(Vec3 light) {
+  std::array<float, kSix> weights{};
+  const std::array<float, 3> axes{light.x, light.y, light.z};
+  for (size_t i = 0; i < 3; ++i) weights[axes[i] < 0 ? i + 3 : i] = axes[i] * axes[i];
+  return weights;
+}
+
+Vec3 inView(const FrameAxes& axes, Vec3 direction) {
+  return {dot(axes.right, direction), dot(axes.up, direction), dot(axes.to_eye, direction)};
+}
+
+// Solves the normal equations a x = b by Cholesky's decomposition; a is symmetric, and a small ridge keeps it positive.
+std::array<double, kSix> solved(std::array<std::array<double, kSix>, kSix> a, std::array<double, kSix> b) {
+  for (size_t i = 0; i < kSix; ++i) a[i][i] += 1e-6;
+  for (size_t i = 0; i < kSix; ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      double sum = a[i][j];
+      for (size_t k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
+      a[i][j] = i == j ? std::sqrt(sum) : sum / a[j][j];
+    }
+  }
+  for (size_t i = 0; i < kSix; ++i) {
+    for (size_t k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
+    b[i] /= a[i][i];
+  }
+  for (size_t i = kSix; i-- > 0;) {
+    for (size_t k = i + 1; k < kSix; ++k) b[i] -= a[k][i] * b[k];
+    b[i] /= a[i][i];
+  }
+  return b;
+}
+
+}  // namespace
+
+float sixWayLight(std::span<const float> maps, Vec3 light_in_view) {
+  const auto weights = sixWeights(light_in_view);
+  float sum = 0;
+  for (size_t i = 0; i < kSix; ++i) sum += weights[i] * maps[i];
+  return sum;
+}
+
+std::vector<float> fitSixWay(const SeenTexels& seen, const ImpostorInfo& info, const ImpostorLights& lights) {
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  const size_t row = size_t(info.views) * size_t(info.frame);
+  std::vector<float> maps(seen.texels.size() * kSix);
+  parallelFor(seen.texels.size(), [&](size_t t) {
+    const size_t x = seen.texels[t] % row, y = seen.texels[t] / row;
+    const FrameAxes axes = frameAxes(frameDirection(int(x) / info.frame, int(y) / info.frame, info.views));
+    std::array<std::array<double, kSix>, kSix> a{};
+    std::array<double, kSix> b{};
+    for (size_t l = 0; l < directions.size(); ++l) {
+      const auto own = sixWeights(inView(axes, directions[l]));
+      const double weight = lights.weights[l];
+      for (size_t i = 0; i < kSix; ++i) {
+        b[i] += weight * own[i] * seen.light[t * directions.size() + l];
+        for (size_t j = 0; j < kSix; ++j) a[i][j] += weight * own[i] * own[j];
+      }
+    }
+    const auto best = solved(a, b);
+    for (size_t i = 0; i < kSix; ++i) maps[t * kSix + i] = inSteps(float(best[i]));
+  });
+  return maps;
+}
+
+}  // namespace cloudbake

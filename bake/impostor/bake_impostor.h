@@ -1,0 +1,72 @@
+// Bakes the texels of lobe impostors (core/impostor.h). The view of a texel is known, so that its lobe is fitted to what this view sees:
+//   C(l) = ∫ σ_v e^{−τ(t)} S(σ ℓ(t, l)) dt / (1 − e^{−τ(∞)})
+// along the texel's rays, or to the lobes of the mesh where it is the mesh that is shown.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/lobe/sliced_field.h"
+#include "core/impostor.h"
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// Directions to the light: both senses of the axes, with a weight ≥ 0 for each.
+struct ImpostorLights {
+  std::span<const Vec3> axes;
+  std::span<const float> weights;
+};
+
+/// What the texels of some frames show, for the texels that something is seen in.
+struct SeenTexels {
+  std::vector<uint32_t> texels;  ///< their numbers, row by row of the atlas, rising within a frame
+  std::vector<float> opacity;    ///< 0 … 1
+  std::vector<float> depth;      ///< as in Impostor, the mean of what is seen
+  std::vector<float> light;      ///< #texels × 2 #axes: 0 … 1, what shows of a light from there
+};
+
+struct VolumeFrames {
+  const SweepField& field;
+  VolumeLight light;
+  double ray_length = 0;  ///< L, world units
+};
+/// The volume in frames first … first + count − 1, counted row by row. The result is the same for any number of threads.
+SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const VolumeFrames& volume, std::span<const Vec3> axes);
+
+struct MeshFrames {
+  const BakedMesh& mesh;
+  float half_lambert = 1;  ///< f of the factor lerp(f, 1, n·l/2 + ½) of all lights; 1: none
+};
+/// The mesh, opaque.
+SeenTexels seenOfMesh(const ImpostorInfo& info, int first, int count, const MeshFrames& mesh, std::span<const Vec3> axes);
+
+/// The smallest ball around points, within a percent (Bădoiu and Clarkson, "Smaller core-sets for balls", SODA 2003), as center and radius.
+std::pair<Vec3, float> ballAround(std::span<const Vec3> points);
+
+/// Lobes fitted to the light of texels with these k and b. `light` is as in SeenTexels.
+std::vector<Lobe> fitTexels(std::span<const float> light, const ImpostorLights& lights, LobeShape shape, float extinction);
+/// k and b for all texels, from about `most` of them.
+LobeShape fitTexelShape(std::span<const float> light, const ImpostorLights& lights, LobeShape start, float extinction, size_t most);
+
+/// The mean of (T_lobe − light)² over lights by weight and texels by opacity: its root is the rms.
+struct TexelError {
+  double squares = 0, weight = 0;
+  double rms() const;
+};
+TexelError errorOfTexels(const SeenTexels& seen, std::span<const Lobe> lobes, const ImpostorLights& lights, LobeShape shape,
+                         float extinction);
+
+/// Writes the lobes, opacities and depths of texels into the atlas, whose info says how they are scaled.
+void storeTexels(const SeenTexels& seen, std::span<const Lobe> lobes, Impostor& impostor);
+/// Gives texels in which nothing is seen the lobe and depth of their neighbours, so that filters do not mix others in.
+void fillEmptyTexels(Impostor& impostor);
+
+/// Six-way light maps: what shows of light along the axes of the view (+x right, +y up, +z towards the eye; then −x, −y, −z), fitted to the
+/// same light by least squares. Light from l shows Σ lᵢ² map(axis i, sense of lᵢ), as in Unity's Six-way Smoke Lit. #texels × 6 values.
+std::vector<float> fitSixWay(const SeenTexels& seen, const ImpostorInfo& info, const ImpostorLights& lights);
+/// What they show.
+float sixWayLight(std::span<const float> maps, Vec3 light_in_view);
+
+}  // namespace cloudbake

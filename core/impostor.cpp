@@ -1,0 +1,79 @@
+#include "core/impostor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloudbake {
+
+namespace {
+
+float signOf(float value) { return value < 0 ? -1.0F : 1.0F; }
+
+Image halved(const Image& image) {
+  Image half = blankImage(image.width / 2, image.height / 2);
+  for (int y = 0; y < half.height; ++y)
+    for (int x = 0; x < half.width; ++x)
+      half.at(x, y) =
+          (image.at(2 * x, 2 * y) + image.at(2 * x + 1, 2 * y) + image.at(2 * x, 2 * y + 1) + image.at(2 * x + 1, 2 * y + 1)) / 4;
+  return half;
+}
+
+}  // namespace
+
+Impostor blankImpostor(const ImpostorInfo& info) {
+  const Image image = blankImage(info.views * info.frame, info.views * info.frame);
+  return {info, {image}, {image}};
+}
+
+void addMipLevels(Impostor& impostor) {
+  for (std::vector<Image>* levels : {&impostor.direction, &impostor.rest}) {
+    levels->resize(1);
+    for (int frame = impostor.info.frame; frame % 2 == 0 && frame / 2 >= kLeastFrame; frame /= 2) levels->push_back(halved(levels->back()));
+  }
+}
+
+Lobe lobeOfTexel(Vec3 direction, float root, float thickest) {
+  return {normalized(direction * 2 - Vec3{1, 1, 1}).value_or(Vec3{0, -1, 0}), root * root * thickest};
+}
+
+BakedMesh boxWithImpostor(Impostor impostor) {
+  BakedMesh mesh;
+  for (int corner = 0; corner < 8; ++corner) mesh.surface.positions.push_back(impostor.info.box.corner(corner));
+  mesh.surface.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  mesh.lobes.resize(8, {{0, -1, 0}, 0});
+  mesh.info.lobe = "fit";
+  mesh.info.shape = impostor.info.shape;
+  mesh.info.extinction = impostor.info.extinction;
+  mesh.info.input_hash = impostor.info.input_hash;
+  if (impostor.info.gains) mesh.info.volume.emplace();
+  mesh.impostor = std::make_shared<const Impostor>(std::move(impostor));
+  return mesh;
+}
+
+Vec3 frameDirection(int i, int j, int views) {
+  const auto at = [&](int index) { return 2 * float(index) / float(views - 1) - 1; };
+  const float u = at(i), v = at(j), y = 1 - std::abs(u) - std::abs(v);
+  const Vec3 direction = y >= 0 ? Vec3{u, y, v} : Vec3{(1 - std::abs(v)) * signOf(u), y, (1 - std::abs(u)) * signOf(v)};
+  return direction / length(direction);
+}
+
+std::array<FrameWeight, 3> framesAround(Vec3 to_eye, int views) {
+  const Vec3 d = to_eye / (std::abs(to_eye.x) + std::abs(to_eye.y) + std::abs(to_eye.z));
+  const Vec2 at = d.y >= 0 ? Vec2{d.x, d.z} : Vec2{(1 - std::abs(d.z)) * signOf(d.x), (1 - std::abs(d.x)) * signOf(d.z)};
+  const auto last = float(views - 1);
+  const float x = std::clamp((at.x + 1) / 2 * last, 0.0F, last), y = std::clamp((at.y + 1) / 2 * last, 0.0F, last);
+  const int i = std::min(int(x), views - 2), j = std::min(int(y), views - 2);
+  const float u = x - float(i), v = y - float(j);
+  const FrameWeight side = u > v ? FrameWeight{i + 1, j, u - v} : FrameWeight{i, j + 1, v - u};
+  return {{{i, j, 1 - std::max(u, v)}, side, {i + 1, j + 1, std::min(u, v)}}};
+}
+
+FrameAxes frameAxes(Vec3 to_eye) {
+  constexpr float kUpright = 0.9999F;  // beyond it the eye looks straight down or up
+  Vec3 right{1, 0, 0};
+  if (std::abs(to_eye.y) < kUpright) right = Vec3{to_eye.z, 0, -to_eye.x} / std::sqrt(to_eye.x * to_eye.x + to_eye.z * to_eye.z);
+  return {right, cross(to_eye, right), to_eye};
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,74 @@
+// Lobe impostors: pictures of a cloud from all sides, whose pixels keep the lobe instead of a colour, so that any light can shine on them.
+// The frames of an atlas are seen from directions on an octahedron (R. Brucks, "Octahedral Impostors", 2018, after Cigolle and others, "A
+// Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014). shaders/functions/impostor.glsl is the same for engines.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// What the lobes of an impostor show.
+enum class ImpostorOf {
+  kVolume,  ///< the light of the volume, as it is seen along the view
+  kMesh     ///< the lobes of the mesh's surface
+};
+
+/// Lengths are scene units, directions have scene axes.
+struct ImpostorInfo {
+  int views = 8;   ///< N: the atlas has N × N frames, ≥ 2
+  int frame = 64;  ///< pixels to a side of a frame
+  ImpostorOf of = ImpostorOf::kVolume;
+  Vec3 center;             ///< of the ball that each frame shows
+  float radius = 1;        ///< of that ball; the frame is as wide as the ball
+  Box box;                 ///< of the cloud
+  LobeShape shape;         ///< k and b
+  float extinction = 0;    ///< σ
+  float thickest = 0;      ///< d of the value 1
+  bool gains = false;      ///< the sun's term is that of a fit to a volume, which the painted look brightens
+  std::string input_hash;  ///< XXH3-128 of the asset's bytes, hexadecimal
+};
+
+/// The two pictures of an atlas, and their mip levels: means of 2 × 2 texels, down to kLeastFrame texels to a side of a frame. Frame (i, j)
+/// is i frames from the left and j from the top. All values are 0 … 1; those of the pictures are in steps of 1/255.
+struct Impostor {
+  ImpostorInfo info;
+  std::vector<Image> direction;  ///< o · ½ + ½
+  std::vector<Image> rest;       ///< √(d / thickest); opacity; depth, 0 nearest to the eye and 1 farthest from it in the ball
+};
+inline constexpr int kLeastFrame = 4;
+
+/// An atlas without mip levels, in which nothing is seen.
+Impostor blankImpostor(const ImpostorInfo& info);
+/// Makes the mip levels anew.
+void addMipLevels(Impostor& impostor);
+
+/// A lobe as the two pictures have it at a texel, in scene units.
+Lobe lobeOfTexel(Vec3 direction, float root, float thickest);
+
+/// The cloud's box, without lobes, which has the impostor: what scenes place. Its k, b and σ are those of the impostor.
+BakedMesh boxWithImpostor(Impostor impostor);
+
+/// The direction to the eye from which frame (i, j) of N × N is seen; a unit vector. The middle of the octahedron's map is +Y, its corners
+/// are −Y, +X is right and +Z down.
+Vec3 frameDirection(int i, int j, int views);
+
+/// A frame and how much it counts.
+struct FrameWeight {
+  int i = 0, j = 0;
+  float weight = 0;
+};
+/// The three frames around a direction to the eye (a unit vector); the weights are ≥ 0 and have the sum 1.
+std::array<FrameWeight, 3> framesAround(Vec3 to_eye, int views);
+
+/// The axes of a frame's picture.
+struct FrameAxes {
+  Vec3 right, up, to_eye;
+};
+FrameAxes frameAxes(Vec3 to_eye);
+
+}  // namespace cloudbake

@@ -1,0 +1,175 @@
+#include "preview/mesh_clouds/impostor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/affine.h"
+#include "core/lobe_lighting.h"
+#include "core/lobe_packing.h"
+#include "core/parallel.h"
+#include "preview/backdrop/sky.h"
+
+namespace cloudbake {
+
+namespace {
+
+// The linear filter of a GPU: four texels, clamped at the picture's edges. `u` and `v` are 0 … 1 across the picture.
+Vec3 bilinear(const Image& image, float u, float v) {
+  const float x = u * float(image.width) - 0.5F, y = v * float(image.height) - 0.5F;
+  const float left = std::floor(x), top = std::floor(y), a = x - left, b = y - top;
+  const auto at = [&](int dx, int dy) {
+    return image.at(std::clamp(int(left) + dx, 0, image.width - 1), std::clamp(int(top) + dy, 0, image.height - 1));
+  };
+  return (at(0, 0) * (1 - a) + at(1, 0) * a) * (1 - b) + (at(0, 1) * (1 - a) + at(1, 1) * a) * b;
+}
+
+Vec3 trilinear(const std::vector<Image>& levels, float u, float v, float level) {
+  const float clamped = std::clamp(level, 0.0F, float(levels.size() - 1));
+  const auto fine = size_t(clamped);
+  const float share = clamped - float(fine);
+  const Vec3 value = bilinear(levels[fine], u, v);
+  return share > 0 ? value * (1 - share) + bilinear(levels[fine + 1], u, v) * share : value;
+}
+
+}  // namespace
+
+ImpostorView::ImpostorView(const Impostor& impostor, Vec3 eye)
+    : impostor_(impostor), eye_((eye - impostor.info.center) / impostor.info.radius) {
+  const auto weights = framesAround(eye_ / length(eye_), impostor.info.views);
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    const auto& [i, j, weight] = weights[f];
+    frames_[f] = {i, j, weight, frameAxes(frameDirection(i, j, impostor.info.views))};
+  }
+}
+
+ImpostorPoint ImpostorView::at(Vec3 direction, float texel_share) const {
+  const ImpostorInfo& info = impostor_.info;
+  const float level = std::log2(std::max(texel_share, 1e-6F)), half_texel = 0.5F / float(info.frame);
+  Vec3 sum_direction;
+  float opacity = 0, thickness = 0, distance = 0;
+  for (const Frame& frame : frames_) {
+    if (!(frame.weight > 0)) continue;
+    const float facing = dot(direction, frame.axes.to_eye), away = dot(eye_, frame.axes.to_eye);
+    if (!(facing < 0)) continue;
+    // Where the ray is at a height over the frame's plane, and the place in the atlas there.
+    float t = 0;
+    const auto placeAt = [&](float height) {
+      t = (height - away) / facing;
+      const Vec3 p = eye_ + direction * t;
+      return Vec2{0.5F + 0.5F * dot(p, frame.axes.right), 0.5F - 0.5F * dot(p, frame.axes.up)};
+    };
+    const auto inAtlas = [&](Vec2 at, int axis) {
+      const float within = std::clamp(axis == 0 ? at.x : at.y, half_texel, 1 - half_texel);
+      return (float(axis == 0 ? frame.i : frame.j) + within) / float(info.views);
+    };
+    const Vec2 flat = placeAt(0);
+    const Vec3 first = trilinear(impostor_.rest, inAtlas(flat, 0), inAtlas(flat, 1), level);
+    const Vec2 at = placeAt(1 - 2 * first.z);
+    if (at.x < 0 || at.x > 1 || at.y < 0 || at.y > 1) continue;
+    const float u = inAtlas(at, 0), v = inAtlas(at, 1);
+    const Vec3 rest = trilinear(impostor_.rest, u, v, level);
+    const Lobe lobe = lobeOfTexel(trilinear(impostor_.direction, u, v, level), rest.x, info.thickest);
+    const float weight = frame.weight * rest.y;
+    sum_direction += lobe.direction * weight;
+    thickness += lobe.thickness * weight;
+    distance += ((1 - 2 * rest.z - away) / facing) * weight;
+    opacity += weight;
+  }
+  if (!(opacity > 0)) return {};
+  return {{normalized(sum_direction).value_or(Vec3{0, -1, 0}), thickness / opacity}, opacity, distance * info.radius / opacity};
+}
+
+namespace {
+
+/// An instance that is an impostor, ready to be drawn.
+struct PlacedImpostor {
+  const Instance* instance;
+  float distance;  // of its center
+};
+
+// Two colours of a pixel, the nearer one before the other.
+Rgba over(const Rgba& a, const Rgba& b) {
+  const bool a_is_near = a[3] <= b[3];
+  const Rgba &near = a_is_near ? a : b, &far = a_is_near ? b : a;
+  const float behind = (1 - near[2]) * far[2], opacity = near[2] + behind;
+  if (!(opacity > 0)) return kNoCloud;
+  const auto mean = [&](size_t c) { return (near[c] * near[2] + far[c] * behind) / opacity; };
+  return {mean(0), mean(1), opacity, mean(3)};
+}
+
+void addImpostor(Image4& channels, const Instance& instance, const Camera& camera, const LightSettings& light, const DepthRange& range) {
+  const Impostor& impostor = *instance.mesh->impostor;
+  const Affine to_own = inverted(instance.to_world).value();
+  const Vec3 eye = transformPoint(to_own, camera.look_from);
+  if (length(eye - impostor.info.center) <= impostor.info.radius) return;
+  const ImpostorView view(impostor, eye);
+  const CameraAxes axes = cameraAxes(camera);
+  const CameraRays rays(camera);
+
+  // The pixels of the ball's box in the world.
+  const float reach = impostor.info.radius;
+  int left = camera.width, right = -1, top = camera.height, bottom = -1;
+  const float per_pixel = 2 * std::tan(camera.vertical_fov_degrees * float(kPi / 360)) / float(camera.height);
+  for (int corner = 0; corner < 8; ++corner) {
+    Box ball;
+    ball.add(impostor.info.center - Vec3{reach, reach, reach});
+    ball.add(impostor.info.center + Vec3{reach, reach, reach});
+    const Vec3 from = transformPoint(instance.to_world, ball.corner(corner)) - camera.look_from;
+    const float depth = dot(from, axes.forward) * per_pixel;
+    if (!(depth > 0)) {
+      left = top = 0, right = camera.width - 1, bottom = camera.height - 1;
+      break;
+    }
+    const float x = float(camera.width) / 2 + dot(from, axes.right) / depth, y = float(camera.height) / 2 - dot(from, axes.up) / depth;
+    const auto within = [](float at, int count) { return int(std::clamp(at, -1.0F, float(count))); };
+    left = std::min(left, within(x - 1, camera.width)), right = std::max(right, within(x + 1, camera.width));
+    top = std::min(top, within(y - 1, camera.height)), bottom = std::max(bottom, within(y + 1, camera.height));
+  }
+  left = std::max(left, 0), top = std::max(top, 0), right = std::min(right, camera.width - 1), bottom = std::min(bottom, camera.height - 1);
+
+  const float scale = unitScale(instance.to_world), extinction = worldExtinction(instance, light);
+  const LobeShape shape{impostor.info.shape.exponent, impostor.info.shape.bias * scale};
+  const Vec3 center = transformPoint(instance.to_world, impostor.info.center), to_light = keyLight(light.sky).direction;
+  const float step_x = float(camera.width) / float(channels.width), step_y = float(camera.height) / float(channels.height);
+  const float texel_share = length(center - camera.look_from) * per_pixel * step_y / (2 * reach * scale) * float(impostor.info.frame);
+  const float gain = impostor.info.gains ? light.volume_gain : 1;
+  const float share = instance.sun_shares.empty() ? 1
+                                                  : std::accumulate(instance.sun_shares.begin(), instance.sun_shares.end(), 0.0F) /
+                                                        float(instance.sun_shares.size());
+  left = int(float(left) / step_x), right = std::min(int(float(right) / step_x), channels.width - 1);
+  top = int(float(top) / step_y), bottom = std::min(int(float(bottom) / step_y), channels.height - 1);
+  // An impostor has no colour of its own, and lamps do not shine on it.
+  const auto fieldsOf = [&](const Lobe& lobe) -> std::array<float, 2> {
+    if (light.shown == ShownLight::kOwnRedGreen) return {1, 1};
+    if (light.shown == ShownLight::kOwnBlue) return {1, 0};
+    if (light.shown != ShownLight::kSunAndSky) return {0, 0};
+    return {std::min(gain * lobeTransmittance(lobe, to_light, shape, extinction), 1.0F) * share,
+            lobeTransmittance(lobe, {0, 1, 0}, shape, extinction)};
+  };
+  parallelFor(top, bottom + 1, [&](int y) {
+    for (int x = left; x <= right; ++x) {
+      const Vec3 direction = rays.at((float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y).direction;
+      const ImpostorPoint seen = view.at(transformVector(to_own, direction), texel_share);
+      if (!(seen.opacity > 0)) continue;
+      const auto [red, green] = fieldsOf(mappedLobe(seen.lobe, instance.to_world));
+      const float depth = (dot(direction, axes.forward) * seen.distance - range.near) / (range.far - range.near);
+      Rgba& pixel = channels.at(x, y);
+      pixel = over(pixel, {red, green, seen.opacity, std::max(0.0F, depth)});
+    }
+  });
+}
+
+}  // namespace
+
+void addImpostors(Image4& channels, std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
+                  const DepthRange& range) {
+  std::vector<PlacedImpostor> placed;
+  for (const Instance& instance : instances)
+    if (instance.is_seen && instance.mesh->impostor)
+      placed.push_back({&instance, length(transformPoint(instance.to_world, instance.mesh->impostor->info.center) - camera.look_from)});
+  std::stable_sort(placed.begin(), placed.end(), [](const PlacedImpostor& a, const PlacedImpostor& b) { return a.distance > b.distance; });
+  for (const PlacedImpostor& one : placed) addImpostor(channels, *one.instance, camera, light, range);
+}
+
+}  // namespace cloudbake
