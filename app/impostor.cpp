@@ -19,7 +19,7 @@ ExitCode runImpostor(const CommandLine& line) {
   const ImpostorFiles files = encodeImpostor(baked.impostor, billboardOf(baked.impostor));
   const std::filesystem::path folder = settings.output.file;
   std::vector<std::pair<const char*, std::string>> written{
-      {"impostor.glb", files.glb}, {"impostor_direction.png", files.direction_png}, {"impostor_rest.png", files.rest_png}};
+      {"impostor.glb", files.glb}, {"impostor_lobe.png", files.lobe_png}, {"impostor_rest.png", files.rest_png}};
   if (baked.six_way) {
     written.emplace_back("impostor_six_way_1.png", encodeRgbaPng(baked.six_way->size, baked.six_way->size, baked.six_way->first));
     written.emplace_back("impostor_six_way_2.png", encodeRgbaPng(baked.six_way->size, baked.six_way->size, baked.six_way->second));

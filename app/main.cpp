@@ -71,7 +71,7 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake impostor cloud.glb -o far\n  cloudbake impostor cloud.glb --views 12 --frame 128 -o far\n"
      "  cloudbake impostor cloud.glb --of mesh --half-lambert 0.3 -o far",
      "DIR", runImpostor, "folder to write the files to", "",
-     "impostor.glb impostor_direction.png impostor_rest.png impostor_six_way_1.png impostor_six_way_2.png"},
+     "impostor.glb impostor_lobe.png impostor_rest.png impostor_six_way_1.png impostor_six_way_2.png"},
     {kCheck, "check", "ASSET.glb", "baked asset to check",
      "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"

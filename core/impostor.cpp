@@ -26,14 +26,10 @@ Impostor blankImpostor(const ImpostorInfo& info) {
 }
 
 void addMipLevels(Impostor& impostor) {
-  for (std::vector<Image>* levels : {&impostor.direction, &impostor.rest}) {
+  for (std::vector<Image>* levels : {&impostor.lobe, &impostor.rest}) {
     levels->resize(1);
     for (int frame = impostor.info.frame; frame % 2 == 0 && frame / 2 >= kLeastFrame; frame /= 2) levels->push_back(halved(levels->back()));
   }
-}
-
-Lobe lobeOfTexel(Vec3 direction, float root, float thickest) {
-  return {normalized(direction * 2 - Vec3{1, 1, 1}).value_or(Vec3{0, -1, 0}), root * root * thickest};
 }
 
 BakedMesh boxWithImpostor(Impostor impostor) {
@@ -43,7 +39,7 @@ BakedMesh boxWithImpostor(Impostor impostor) {
                             {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   mesh.lobes.resize(8, {{0, -1, 0}, 0});
   mesh.info.lobe = "fit";
-  mesh.info.shape = impostor.info.shape;
+  mesh.info.shape = {impostor.info.exponent, 0};
   mesh.info.extinction = impostor.info.extinction;
   mesh.info.input_hash = impostor.info.input_hash;
   if (impostor.info.gains) mesh.info.volume.emplace();
@@ -51,16 +47,29 @@ BakedMesh boxWithImpostor(Impostor impostor) {
   return mesh;
 }
 
+namespace {
+
+// The map of an octahedron whose middle is +z: the lower half is folded over the edges of the square −1 … 1.
+Vec2 octahedral(Vec3 d) {
+  const float sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+  const float x = d.x / sum, y = d.y / sum;
+  return d.z >= 0 ? Vec2{x, y} : Vec2{(1 - std::abs(y)) * signOf(x), (1 - std::abs(x)) * signOf(y)};
+}
+Vec3 fromOctahedral(Vec2 at) {
+  const float z = 1 - std::abs(at.x) - std::abs(at.y);
+  const Vec3 d = z >= 0 ? Vec3{at.x, at.y, z} : Vec3{(1 - std::abs(at.y)) * signOf(at.x), (1 - std::abs(at.x)) * signOf(at.y), z};
+  return d / length(d);
+}
+
+}  // namespace
+
 Vec3 frameDirection(int i, int j, int views) {
-  const auto at = [&](int index) { return 2 * float(index) / float(views - 1) - 1; };
-  const float u = at(i), v = at(j), y = 1 - std::abs(u) - std::abs(v);
-  const Vec3 direction = y >= 0 ? Vec3{u, y, v} : Vec3{(1 - std::abs(v)) * signOf(u), y, (1 - std::abs(u)) * signOf(v)};
-  return direction / length(direction);
+  const Vec3 d = fromOctahedral({2 * float(i) / float(views - 1) - 1, 2 * float(j) / float(views - 1) - 1});
+  return {d.x, d.z, d.y};
 }
 
 std::array<FrameWeight, 3> framesAround(Vec3 to_eye, int views) {
-  const Vec3 d = to_eye / (std::abs(to_eye.x) + std::abs(to_eye.y) + std::abs(to_eye.z));
-  const Vec2 at = d.y >= 0 ? Vec2{d.x, d.z} : Vec2{(1 - std::abs(d.z)) * signOf(d.x), (1 - std::abs(d.x)) * signOf(d.z)};
+  const Vec2 at = octahedral({to_eye.x, to_eye.z, to_eye.y});
   const auto last = float(views - 1);
   const float x = std::clamp((at.x + 1) / 2 * last, 0.0F, last), y = std::clamp((at.y + 1) / 2 * last, 0.0F, last);
   const int i = std::min(int(x), views - 2), j = std::min(int(y), views - 2);
@@ -74,6 +83,16 @@ FrameAxes frameAxes(Vec3 to_eye) {
   Vec3 right{1, 0, 0};
   if (std::abs(to_eye.y) < kUpright) right = Vec3{to_eye.z, 0, -to_eye.x} / std::sqrt(to_eye.x * to_eye.x + to_eye.z * to_eye.z);
   return {right, cross(to_eye, right), to_eye};
+}
+
+Vec2 encodedDirection(Vec3 direction, const FrameAxes& axes) {
+  const Vec2 at = octahedral({dot(axes.right, direction), dot(axes.up, direction), -dot(axes.to_eye, direction)});
+  return {at.x * 0.5F + 0.5F, at.y * 0.5F + 0.5F};
+}
+
+Vec3 decodedDirection(Vec2 encoded, const FrameAxes& axes) {
+  const Vec3 d = fromOctahedral({encoded.x * 2 - 1, encoded.y * 2 - 1});
+  return axes.right * d.x + axes.up * d.y - axes.to_eye * d.z;
 }
 
 }  // namespace cloudbake

@@ -26,19 +26,26 @@ struct ImpostorInfo {
   Vec3 center;             ///< of the ball that each frame shows
   float radius = 1;        ///< of that ball; the frame is as wide as the ball
   Box box;                 ///< of the cloud
-  LobeShape shape;         ///< k and b
+  float exponent = 3;      ///< k and b
   float extinction = 0;    ///< σ
   float thickest = 0;      ///< d of the value 1
   bool gains = false;      ///< the sun's term is that of a fit to a volume, which the painted look brightens
   std::string input_hash;  ///< XXH3-128 of the asset's bytes, hexadecimal
 };
 
+/// What a texel has beside its opacity and depth. Light from l shows lit · exp(−σ max(0, l·o/2 + ½)^k d): the lobe formula with
+/// b = −ln(lit) / σ.
+struct TexelLobe {
+  Lobe lobe;
+  float lit = 1;  ///< 0 … 1
+};
+
 /// The two pictures of an atlas, and their mip levels: means of 2 × 2 texels, down to kLeastFrame texels to a side of a frame. Frame (i, j)
 /// is i frames from the left and j from the top. All values are 0 … 1; those of the pictures are in steps of 1/255.
 struct Impostor {
   ImpostorInfo info;
-  std::vector<Image> direction;  ///< o · ½ + ½
-  std::vector<Image> rest;       ///< √(d / thickest); opacity; depth, 0 nearest to the eye and 1 farthest from it in the ball
+  std::vector<Image> lobe;  ///< o as a point of an octahedron's map (2 values), √(d / thickest)
+  std::vector<Image> rest;  ///< lit; opacity; depth, 0 nearest to the eye and 1 farthest from it in the ball
 };
 inline constexpr int kLeastFrame = 4;
 
@@ -46,9 +53,6 @@ inline constexpr int kLeastFrame = 4;
 Impostor blankImpostor(const ImpostorInfo& info);
 /// Makes the mip levels anew.
 void addMipLevels(Impostor& impostor);
-
-/// A lobe as the two pictures have it at a texel, in scene units.
-Lobe lobeOfTexel(Vec3 direction, float root, float thickest);
 
 /// The cloud's box, without lobes, which has the impostor: what scenes place. Its k, b and σ are those of the impostor.
 BakedMesh boxWithImpostor(Impostor impostor);
@@ -70,5 +74,10 @@ struct FrameAxes {
   Vec3 right, up, to_eye;
 };
 FrameAxes frameAxes(Vec3 to_eye);
+
+/// A direction o as two values of 0 … 1, and back. The middle of the map is the direction away from the eye, so that its folds, over which
+/// filters cannot mix, are at directions to the eye, which o seldom has.
+Vec2 encodedDirection(Vec3 direction, const FrameAxes& axes);
+Vec3 decodedDirection(Vec2 encoded, const FrameAxes& axes);
 
 }  // namespace cloudbake

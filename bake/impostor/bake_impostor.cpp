@@ -20,7 +20,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kRaysPerSide = 2, kNodes = 4;  // rays to a side of a texel, places per ray at which the light is taken
+constexpr int kRaysPerSide = 2;              // rays to a side of a texel
 constexpr float kLeastOpacity = 1.0F / 512;  // half of a step of what is stored
 
 /// A frame of the atlas.
@@ -45,7 +45,7 @@ Ray rayOf(const ImpostorInfo& info, const AtlasFrame& frame, int x, int y, int r
 /// What is in a row of texels of a frame; rows are put together in order.
 struct RowOfTexels {
   SeenTexels seen;
-  std::vector<Vec3> places;    // at which the light is taken: kRaysPerSide² · kNodes of each texel
+  std::vector<Vec3> places;    // at which the light is taken: kRaysPerSide² · nodes of each texel
   std::vector<float> weights;  // of these, with the sum 1 for each texel
 };
 
@@ -154,20 +154,21 @@ struct ScatteredTerms {
 }  // namespace
 
 SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const VolumeFrames& volume, std::span<const Vec3> axes) {
-  constexpr size_t kRays = kRaysPerSide * kRaysPerSide, kPlaces = kRays * kNodes;
+  constexpr size_t kRays = kRaysPerSide * kRaysPerSide;
+  const auto nodes_per_ray = size_t(volume.nodes), per_texel = kRays * nodes_per_ray;
   const FieldMarch march(volume.field.coverage, volume.light.view_extinction * info.extinction);
   const auto rows = rowsOf(info, first, count, [&](RowOfTexels& row, uint32_t texel, const AtlasFrame& frame, int x, int y) {
-    std::array<float, kPlaces> distances{};
+    std::vector<float> distances(per_texel);
     std::array<float, kRays> opacities{};
     float sum = 0, depth = 0;
     for (size_t r = 0; r < kRays; ++r) {
-      const auto nodes = std::span(distances).subspan(r * kNodes, kNodes);
+      const auto nodes = std::span(distances).subspan(r * nodes_per_ray, nodes_per_ray);
       sum += opacities[r] = march.along(rayOf(info, frame, x, y, int(r)), 2 * info.radius, nodes);
     }
     if (sum / kRays < kLeastOpacity) return;
     for (size_t r = 0; r < kRays; ++r)
-      for (size_t n = 0; n < kNodes; ++n) {
-        const float weight = opacities[r] / (sum * kNodes), distance = distances[r * kNodes + n];
+      for (size_t n = 0; n < nodes_per_ray; ++n) {
+        const float weight = opacities[r] / (sum * float(nodes_per_ray)), distance = distances[r * nodes_per_ray + n];
         const Ray ray = rayOf(info, frame, x, y, int(r));
         row.places.push_back(ray.origin + ray.direction * distance);
         row.weights.push_back(weight);
@@ -183,12 +184,6 @@ SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const Vo
   for (const RowOfTexels& row : rows) append(places, row.places), append(weights, row.weights);
   const size_t lights = 2 * axes.size();
   seen.light.resize(seen.texels.size() * lights);
-  const size_t row_of_atlas = size_t(info.views) * size_t(info.frame);
-  std::vector<Vec3> to_eyes;  // of each frame's row of the atlas
-  const auto to_eye = [&](uint32_t texel) {
-    const size_t x = texel % row_of_atlas, y = texel / row_of_atlas;
-    return frameDirection(int(x) / info.frame, int(y) / info.frame, info.views);
-  };
   sweepLengths(places, axes, volume.field, volume.ray_length, [&](size_t first_axis, std::span<const float> lengths) {
     for (size_t row = 0; row < lengths.size() / std::max<size_t>(1, places.size()); ++row) {
       const size_t light = 2 * first_axis + row;
@@ -196,9 +191,10 @@ SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const Vo
       const auto own = lengths.subspan(row * places.size(), places.size());
       std::optional<ScatteredTerms> terms;
       for (size_t t = 0; t < seen.texels.size(); ++t) {
-        if (!terms || volume.light.asymmetry != 0) terms.emplace(volume.light, info.extinction, -dot(to_eye(seen.texels[t]), direction));
+        if (!terms || volume.light.asymmetry != 0)
+          terms.emplace(volume.light, info.extinction, -dot(axesOfTexel(info, seen.texels[t]).to_eye, direction));
         float sum = 0;
-        for (size_t p = t * kPlaces; p < (t + 1) * kPlaces; ++p) sum += weights[p] * terms->at(own[p]);
+        for (size_t p = t * per_texel; p < (t + 1) * per_texel; ++p) sum += weights[p] * terms->at(own[p]);
         seen.light[t * lights + light] = sum;
       }
     }
@@ -268,65 +264,98 @@ std::pair<Vec3, float> ballAround(std::span<const Vec3> points) {
 
 namespace {
 
+constexpr int kRounds = 4;  // of lobes and factors; more gain less than a percent
+
 // Where the light is darkest the bulk is.
-std::vector<Lobe> startsOf(std::span<const float> light, std::span<const Vec3> directions, LobeShape shape, float extinction) {
+std::vector<Lobe> startsOf(std::span<const float> light, std::span<const Vec3> directions, float extinction) {
   std::vector<Lobe> starts(light.size() / directions.size());
   parallelFor(starts.size(), [&](size_t i) {
     const auto own = light.subspan(i * directions.size(), directions.size());
     Vec3 sum;
-    float least = 1;
-    for (size_t l = 0; l < own.size(); ++l) sum += directions[l] * own[l], least = std::min(least, own[l]);
-    const float depth = -portableLog(std::max(least, 1e-3F)) / extinction - shape.bias;
-    starts[i] = {normalized(-sum).value_or(Vec3{0, -1, 0}), std::max(depth, 0.1F / extinction)};
+    for (size_t l = 0; l < own.size(); ++l) sum += directions[l] * own[l];
+    starts[i] = {normalized(-sum).value_or(Vec3{0, -1, 0}), 1 / extinction};
   });
   return starts;
 }
 
-FitSettings fitSettings(LobeShape shape, float extinction) {
+// The light of texels, divided by the factor of each.
+std::vector<float> dividedLight(std::span<const float> light, std::span<const TexelLobe> texels) {
+  const size_t count = texels.empty() ? 0 : light.size() / texels.size();
+  std::vector<float> divided(light.size());
+  parallelFor(texels.size(), [&](size_t t) {
+    for (size_t l = t * count; l < (t + 1) * count; ++l) divided[l] = light[l] / texels[t].lit;
+  });
+  return divided;
+}
+
+// One round from the texels as they are.
+void fitRound(std::span<const float> light, std::span<const Vec3> directions, std::span<const float> weights, float exponent,
+              float extinction, std::vector<TexelLobe>& texels) {
+  constexpr float kDarkest = 0.5F / 255;
   FitSettings fit;
-  fit.shape = shape;
+  fit.shape = {exponent, 0};
   fit.extinctions = {extinction};
-  return fit;
+  std::vector<Lobe> starts;
+  for (const TexelLobe& texel : texels) starts.push_back(texel.lobe);
+  const std::vector<float> divided = dividedLight(light, texels);
+  const std::vector<Lobe> lobes = fitLobes(starts, {directions, {}, weights, divided}, fit);
+  parallelFor(texels.size(), [&](size_t t) {
+    double squares = 0, products = 0;
+    for (size_t l = 0; l < directions.size(); ++l) {
+      const double shown = lobeTransmittance(lobes[t], directions[l], fit.shape, extinction);
+      squares += weights[l] * shown * shown;
+      products += weights[l] * shown * light[t * directions.size() + l];
+    }
+    texels[t] = {lobes[t], std::clamp(squares > 0 ? float(products / squares) : 0, kDarkest, 1.0F)};
+  });
+}
+
+std::vector<TexelLobe> firstTexels(std::span<const float> light, std::span<const Vec3> directions, float extinction) {
+  constexpr float kFirstLit = 0.8F;
+  std::vector<TexelLobe> texels;
+  for (const Lobe& start : startsOf(light, directions, extinction)) texels.push_back({start, kFirstLit});
+  return texels;
 }
 
 }  // namespace
 
-std::vector<Lobe> fitTexels(std::span<const float> light, const ImpostorLights& lights, LobeShape shape, float extinction) {
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
-  return fitLobes(startsOf(light, directions, shape, extinction), {directions, {}, lights.weights, light}, fitSettings(shape, extinction));
+float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction) {
+  return texel.lit * lobeTransmittance(texel.lobe, to_light, {exponent, 0}, extinction);
 }
 
-LobeShape fitTexelShape(std::span<const float> light, const ImpostorLights& lights, LobeShape start, float extinction, size_t most) {
+std::vector<TexelLobe> fitTexels(std::span<const float> light, const ImpostorLights& lights, float exponent, float extinction) {
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  std::vector<TexelLobe> texels = firstTexels(light, directions, extinction);
+  for (int round = 0; round < kRounds; ++round) fitRound(light, directions, lights.weights, exponent, extinction, texels);
+  return texels;
+}
+
+float fitTexelExponent(std::span<const float> light, const ImpostorLights& lights, float start, float extinction, size_t most) {
   const std::vector<Vec3> directions = bothSenses(lights.axes);
   const size_t texels = light.size() / directions.size(), count = std::min(texels, most);
   std::vector<float> some;
   for (size_t i = 0; i < count; ++i) {
-    const auto row = light.subspan((i * texels + texels / 2) / count % std::max<size_t>(1, texels) * directions.size(), directions.size());
+    const auto row = light.subspan(i * texels / count * directions.size(), directions.size());
     some.insert(some.end(), row.begin(), row.end());
   }
-  ShapeSearch search;
-  search.bias = true;
-  search.first_step = 0.5F;
-  search.vertices = count;
-  return fitShape(startsOf(some, directions, start, extinction), {directions, {}, lights.weights, some}, fitSettings(start, extinction),
-                  search);
+  float exponent = start;
+  std::vector<TexelLobe> fitted = firstTexels(some, directions, extinction);
+  for (int round = 0; round < kRounds; ++round) {
+    fitRound(some, directions, lights.weights, exponent, extinction, fitted);
+    std::vector<Lobe> starts;
+    for (const TexelLobe& texel : fitted) starts.push_back(texel.lobe);
+    FitSettings fit;
+    fit.shape = {exponent, 0};
+    fit.extinctions = {extinction};
+    ShapeSearch search;
+    search.first_step = 0.5F;
+    search.vertices = count;
+    exponent = fitShape(starts, {directions, {}, lights.weights, dividedLight(some, fitted)}, fit, search).exponent;
+  }
+  return exponent;
 }
 
 double TexelError::rms() const { return weight > 0 ? std::sqrt(squares / weight) : 0; }
-
-TexelError errorOfTexels(const SeenTexels& seen, std::span<const Lobe> lobes, const ImpostorLights& lights, LobeShape shape,
-                         float extinction) {
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
-  TexelError error;
-  for (size_t t = 0; t < lobes.size(); ++t)
-    for (size_t l = 0; l < directions.size(); ++l) {
-      const double difference = lobeTransmittance(lobes[t], directions[l], shape, extinction) - seen.light[t * directions.size() + l];
-      const double weight = double(seen.opacity[t]) * double(lights.weights[l]);
-      error.squares += weight * difference * difference;
-      error.weight += weight;
-    }
-  return error;
-}
 
 // --- The atlas ---
 
@@ -336,13 +365,24 @@ float inSteps(float value) { return std::round(std::clamp(value, 0.0F, 1.0F) * 2
 
 }  // namespace
 
-void storeTexels(const SeenTexels& seen, std::span<const Lobe> lobes, Impostor& impostor) {
+FrameAxes axesOfTexel(const ImpostorInfo& info, uint32_t texel) {
+  const uint32_t row = uint32_t(info.views) * uint32_t(info.frame);
+  return frameAxes(frameDirection(int(texel % row) / info.frame, int(texel / row) / info.frame, info.views));
+}
+
+void storeTexels(const SeenTexels& seen, std::span<const TexelLobe> lobes, Impostor& impostor) {
   for (size_t t = 0; t < seen.texels.size(); ++t) {
-    const Vec3 o = lobes[t].direction;
-    impostor.direction[0].pixels[seen.texels[t]] = {inSteps(o.x * 0.5F + 0.5F), inSteps(o.y * 0.5F + 0.5F), inSteps(o.z * 0.5F + 0.5F)};
-    const float thickness = impostor.info.thickest > 0 ? lobes[t].thickness / impostor.info.thickest : 0;
-    impostor.rest[0].pixels[seen.texels[t]] = {inSteps(std::sqrt(thickness)), inSteps(seen.opacity[t]), inSteps(seen.depth[t])};
+    const Vec2 o = encodedDirection(lobes[t].lobe.direction, axesOfTexel(impostor.info, seen.texels[t]));
+    const float thickness = impostor.info.thickest > 0 ? lobes[t].lobe.thickness / impostor.info.thickest : 0;
+    impostor.lobe[0].pixels[seen.texels[t]] = {inSteps(o.x), inSteps(o.y), inSteps(std::sqrt(thickness))};
+    impostor.rest[0].pixels[seen.texels[t]] = {inSteps(lobes[t].lit), inSteps(seen.opacity[t]), inSteps(seen.depth[t])};
   }
+}
+
+TexelLobe storedTexel(const Impostor& impostor, uint32_t texel) {
+  const Vec3 own = impostor.lobe[0].pixels[texel];
+  return {{decodedDirection({own.x, own.y}, axesOfTexel(impostor.info, texel)), own.z * own.z * impostor.info.thickest},
+          impostor.rest[0].pixels[texel].x};
 }
 
 // Pull and push: means of four texels by opacity, over and over, then back to what is empty (Gortler and others, "The Lumigraph", 1996).
@@ -350,8 +390,8 @@ void fillEmptyTexels(Impostor& impostor) {
   const int size = impostor.info.frame, views = impostor.info.views;
   parallelFor(size_t(views) * size_t(views), [&](size_t frame) {
     struct Texel {
-      Vec3 direction;
-      float thickness = 0, depth = 0, weight = 0;
+      Vec3 lobe;
+      float lit = 0, depth = 0, weight = 0;
     };
     struct Level {
       int size = 0;
@@ -363,7 +403,7 @@ void fillEmptyTexels(Impostor& impostor) {
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) {
         const Vec3 rest = impostor.rest[0].at(left + x, top + y);
-        if (rest.y > 0) levels[0].at(x, y) = {impostor.direction[0].at(left + x, top + y), rest.x, rest.z, 1};
+        if (rest.y > 0) levels[0].at(x, y) = {impostor.lobe[0].at(left + x, top + y), rest.x, rest.z, 1};
       }
     while (levels.back().size > 1) {
       Level& fine = levels.back();
@@ -373,12 +413,12 @@ void fillEmptyTexels(Impostor& impostor) {
         for (int x = 0; x < fine.size; ++x) {
           const Texel& from = fine.at(x, y);
           Texel& to = coarse.at(x / 2, y / 2);
-          to.direction += from.direction * from.weight, to.thickness += from.thickness * from.weight;
+          to.lobe += from.lobe * from.weight, to.lit += from.lit * from.weight;
           to.depth += from.depth * from.weight, to.weight += from.weight;
         }
       for (Texel& texel : coarse.texels)
         if (texel.weight > 0) {
-          texel.direction = texel.direction / texel.weight, texel.thickness /= texel.weight, texel.depth /= texel.weight;
+          texel.lobe = texel.lobe / texel.weight, texel.lit /= texel.weight, texel.depth /= texel.weight;
           texel.weight = 1;
         }
       levels.push_back(std::move(coarse));
@@ -392,8 +432,8 @@ void fillEmptyTexels(Impostor& impostor) {
         Vec3& rest = impostor.rest[0].at(left + x, top + y);
         if (rest.y > 0) continue;
         const Texel& texel = levels[0].at(x, y);
-        impostor.direction[0].at(left + x, top + y) = {inSteps(texel.direction.x), inSteps(texel.direction.y), inSteps(texel.direction.z)};
-        rest = {inSteps(texel.thickness), 0, inSteps(texel.depth)};
+        impostor.lobe[0].at(left + x, top + y) = {inSteps(texel.lobe.x), inSteps(texel.lobe.y), inSteps(texel.lobe.z)};
+        rest = {inSteps(texel.lit), 0, inSteps(texel.depth)};
       }
   });
 }
@@ -447,11 +487,9 @@ float sixWayLight(std::span<const float> maps, Vec3 light_in_view) {
 
 std::vector<float> fitSixWay(const SeenTexels& seen, const ImpostorInfo& info, const ImpostorLights& lights) {
   const std::vector<Vec3> directions = bothSenses(lights.axes);
-  const size_t row = size_t(info.views) * size_t(info.frame);
   std::vector<float> maps(seen.texels.size() * kSix);
   parallelFor(seen.texels.size(), [&](size_t t) {
-    const size_t x = seen.texels[t] % row, y = seen.texels[t] / row;
-    const FrameAxes axes = frameAxes(frameDirection(int(x) / info.frame, int(y) / info.frame, info.views));
+    const FrameAxes axes = axesOfTexel(info, seen.texels[t]);
     std::array<std::array<double, kSix>, kSix> a{};
     std::array<double, kSix> b{};
     for (size_t l = 0; l < directions.size(); ++l) {

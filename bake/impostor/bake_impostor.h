@@ -31,6 +31,7 @@ struct VolumeFrames {
   const SweepField& field;
   VolumeLight light;
   double ray_length = 0;  ///< L, world units
+  int nodes = 2;          ///< places of a ray at which the light is taken, in the middles of equal parts of its opacity
 };
 /// The volume in frames first … first + count − 1, counted row by row. The result is the same for any number of threads.
 SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const VolumeFrames& volume, std::span<const Vec3> axes);
@@ -45,21 +46,39 @@ SeenTexels seenOfMesh(const ImpostorInfo& info, int first, int count, const Mesh
 /// The smallest ball around points, within a percent (Bădoiu and Clarkson, "Smaller core-sets for balls", SODA 2003), as center and radius.
 std::pair<Vec3, float> ballAround(std::span<const Vec3> points);
 
-/// Lobes fitted to the light of texels with these k and b. `light` is as in SeenTexels.
-std::vector<Lobe> fitTexels(std::span<const float> light, const ImpostorLights& lights, LobeShape shape, float extinction);
-/// k and b for all texels, from about `most` of them.
-LobeShape fitTexelShape(std::span<const float> light, const ImpostorLights& lights, LobeShape start, float extinction, size_t most);
+/// Lobes fitted to the light of texels with this k. `light` is as in SeenTexels. In turns, lobes are fitted to the light divided by `lit`,
+/// and `lit` is the best factor for these lobes.
+std::vector<TexelLobe> fitTexels(std::span<const float> light, const ImpostorLights& lights, float exponent, float extinction);
+/// k for all texels, from about `most` of them.
+float fitTexelExponent(std::span<const float> light, const ImpostorLights& lights, float start, float extinction, size_t most);
 
-/// The mean of (T_lobe − light)² over lights by weight and texels by opacity: its root is the rms.
+/// What light a texel shows from a unit direction to the light.
+float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction);
+
+/// The mean of (shown − light)² over lights by weight and texels by opacity: its root is the rms.
 struct TexelError {
   double squares = 0, weight = 0;
   double rms() const;
 };
-TexelError errorOfTexels(const SeenTexels& seen, std::span<const Lobe> lobes, const ImpostorLights& lights, LobeShape shape,
-                         float extinction);
+/// Adds the error of what texels show, shown(texel, light). `light` numbers both senses of the lights' axes.
+template <class Shown>
+void addTexelError(const SeenTexels& seen, const ImpostorLights& lights, TexelError& error, const Shown& shown) {
+  const size_t count = 2 * lights.axes.size();
+  for (size_t t = 0; t < seen.texels.size(); ++t)
+    for (size_t l = 0; l < count; ++l) {
+      const double difference = shown(t, l) - seen.light[t * count + l], weight = double(seen.opacity[t]) * double(lights.weights[l]);
+      error.squares += weight * difference * difference;
+      error.weight += weight;
+    }
+}
+
+/// The axes of the frame that a texel of the atlas is in.
+FrameAxes axesOfTexel(const ImpostorInfo& info, uint32_t texel);
 
 /// Writes the lobes, opacities and depths of texels into the atlas, whose info says how they are scaled.
-void storeTexels(const SeenTexels& seen, std::span<const Lobe> lobes, Impostor& impostor);
+void storeTexels(const SeenTexels& seen, std::span<const TexelLobe> lobes, Impostor& impostor);
+/// The lobe that is stored at a texel.
+TexelLobe storedTexel(const Impostor& impostor, uint32_t texel);
 /// Gives texels in which nothing is seen the lobe and depth of their neighbours, so that filters do not mix others in.
 void fillEmptyTexels(Impostor& impostor);
 

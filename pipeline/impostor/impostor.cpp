@@ -26,7 +26,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kDirections = 60;        // of light, beside the zenith
+constexpr int kDirections = 30, kJudgingDirections = 64, kJudgingNodes = 4;  // of light, beside the zenith
+constexpr int kJudgedFrames = 8;
 constexpr size_t kShapeTexels = 512;   // for the search of k and b
 constexpr size_t kMostTexels = 40000;  // that are fitted together, so that their light does not fill the memory
 constexpr float kThickest = 24;        // optical depths: more of them are as dark
@@ -37,17 +38,6 @@ void forGroups(const ImpostorInfo& info, const Use& use) {
   const int all = info.views * info.views;
   const int together = std::clamp(int(kMostTexels / (size_t(info.frame) * size_t(info.frame) / 3 + 1)), 1, all);
   for (int first = 0; first < all; first += together) use(first, std::min(together, all - first));
-}
-
-// A few frames from all sides, for the search of k and b.
-std::vector<float> lightOfSomeFrames(const ImpostorInfo& info, const auto& seenAt) {
-  std::vector<float> light;
-  const int all = info.views * info.views, step = std::max(1, all / 7);
-  for (int frame = step / 2; frame < all; frame += step) {
-    const SeenTexels seen = seenAt(frame, 1);
-    light.insert(light.end(), seen.light.begin(), seen.light.end());
-  }
-  return light;
 }
 
 void storeSixWay(const SeenTexels& seen, std::span<const float> maps, SixWayMaps& six_way) {
@@ -62,33 +52,13 @@ void storeSixWay(const SeenTexels& seen, std::span<const float> maps, SixWayMaps
   }
 }
 
-TexelError errorOfSixWay(const SeenTexels& seen, std::span<const float> maps, const ImpostorInfo& info, const ImpostorLights& lights) {
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
-  const size_t row = size_t(info.views) * size_t(info.frame);
-  TexelError error;
-  for (size_t t = 0; t < seen.texels.size(); ++t) {
-    const size_t x = seen.texels[t] % row, y = seen.texels[t] / row;
-    const FrameAxes axes = frameAxes(frameDirection(int(x) / info.frame, int(y) / info.frame, info.views));
-    for (size_t l = 0; l < directions.size(); ++l) {
-      const Vec3 d = directions[l], in_view{dot(axes.right, d), dot(axes.up, d), dot(axes.to_eye, d)};
-      const double difference = sixWayLight(maps.subspan(6 * t, 6), in_view) - seen.light[t * directions.size() + l];
-      const double weight = double(seen.opacity[t]) * double(lights.weights[l]);
-      error.squares += weight * difference * difference;
-      error.weight += weight;
-    }
-  }
-  return error;
+// Frames from all sides.
+std::vector<int> someFrames(const ImpostorInfo& info, int count) {
+  const int all = info.views * info.views;
+  std::vector<int> frames;
+  for (int i = 0; i < count; ++i) frames.push_back((2 * i + 1) * all / (2 * count));
+  return frames;
 }
-
-// The lobes as a reader has them.
-std::vector<Lobe> storedLobes(const SeenTexels& seen, const Impostor& impostor) {
-  std::vector<Lobe> lobes;
-  for (const uint32_t texel : seen.texels)
-    lobes.push_back(lobeOfTexel(impostor.direction[0].pixels[texel], impostor.rest[0].pixels[texel].x, impostor.info.thickest));
-  return lobes;
-}
-
-void add(TexelError& all, const TexelError& more) { all.squares += more.squares, all.weight += more.weight; }
 
 }  // namespace
 
@@ -118,55 +88,75 @@ BakedImpostor bakeImpostor(const Settings& settings, BakeReport& report, Stopwat
   info.input_hash = hashBytes(bytes);
   std::tie(info.center, info.radius) = ballAround(mesh.surface.positions);
   info.radius *= 1 + 3 / float(info.frame);  // the outermost texels stay empty, for filters
-  const LightSet set = fitLights(std::nullopt, true, kDirections);
-  const ImpostorLights lights{set.axes, set.weights};
+  const LightSet set = fitLights(std::nullopt, true, kDirections), judging = fitLights(std::nullopt, true, kJudgingDirections);
+  const ImpostorLights lights{set.axes, set.weights}, judges{judging.axes, judging.weights};
   const size_t texels = size_t(info.views) * size_t(info.frame) * size_t(info.views) * size_t(info.frame);
   requireMemory({fmt::format("an atlas of {} × {} frames of {} pixels", info.views, info.views, info.frame),
                  double(texels) * (3.0 * sizeof(Vec3) + 16), "use fewer --views or a smaller --frame"},
                 settings.source.memory_limit);
 
   std::optional<IntegrationField> field;
-  std::function<SeenTexels(int, int)> seenAt;
-  LobeShape start{2, 0.25F / info.extinction};
+  std::function<SeenTexels(int, int, std::span<const Vec3>, int)> seenAt;
   if (info.of == ImpostorOf::kVolume) {
     field = buildField(cloud, settings.field, Method::kSweep, report.warnings);
     const VolumeLight light = settings.lobe.volume.over(mesh.info.volume.value_or(VolumeLight{}));
-    seenAt = [&, light](int first, int count) {
-      return seenOfVolume(info, first, count, {field->swept(), light, *parameters.bake.ray_length}, set.axes);
+    seenAt = [&, light](int first, int count, std::span<const Vec3> axes, int nodes) {
+      return seenOfVolume(info, first, count, {field->swept(), light, *parameters.bake.ray_length, nodes}, axes);
     };
   } else {
-    start = mesh.info.shape;
-    seenAt = [&](int first, int count) { return seenOfMesh(info, first, count, {mesh, settings.impostor.half_lambert}, set.axes); };
+    seenAt = [&](int first, int count, std::span<const Vec3> axes, int) {
+      return seenOfMesh(info, first, count, {mesh, settings.impostor.half_lambert}, axes);
+    };
   }
   watch.lap(report.seconds, "field");
 
-  const std::vector<float> some = lightOfSomeFrames(info, seenAt);
+  constexpr int kNodes = 2;
+  std::vector<float> some;
+  for (const int frame : someFrames(info, kJudgedFrames)) {
+    const SeenTexels seen = seenAt(frame, 1, set.axes, kNodes);
+    some.insert(some.end(), seen.light.begin(), seen.light.end());
+  }
   if (some.empty()) throw InputError(file.string(), "nothing of the cloud is seen: is it smaller than a texel?");
-  info.shape = fitTexelShape(some, lights, start, info.extinction, kShapeTexels);
+  info.exponent = fitTexelExponent(some, lights, 2, info.extinction, kShapeTexels);
   float thickest = 0;
-  for (const Lobe& lobe : fitTexels(some, lights, info.shape, info.extinction)) thickest = std::max(thickest, lobe.thickness);
+  for (const TexelLobe& texel : fitTexels(some, lights, info.exponent, info.extinction))
+    thickest = std::max(thickest, texel.lobe.thickness);
   info.thickest = std::min(thickest, kThickest / info.extinction);
   watch.lap(report.seconds, "shape");
 
   BakedImpostor baked{blankImpostor(info), {}, {}};
   const int size = info.views * info.frame;
   if (settings.impostor.six_way) baked.six_way = SixWayMaps{std::vector<uint8_t>(4 * texels), std::vector<uint8_t>(4 * texels), size};
-  TexelError fitted, stored, six_way;
   forGroups(info, [&](int first, int count) {
-    const SeenTexels seen = seenAt(first, count);
-    const std::vector<Lobe> lobes = fitTexels(seen.light, lights, info.shape, info.extinction);
-    storeTexels(seen, lobes, baked.impostor);
+    const SeenTexels seen = seenAt(first, count, set.axes, kNodes);
+    storeTexels(seen, fitTexels(seen.light, lights, info.exponent, info.extinction), baked.impostor);
     baked.figures.texels += seen.texels.size();
-    add(fitted, errorOfTexels(seen, lobes, lights, info.shape, info.extinction));
-    add(stored, errorOfTexels(seen, storedLobes(seen, baked.impostor), lights, info.shape, info.extinction));
-    const std::vector<float> maps = fitSixWay(seen, info, lights);
-    add(six_way, errorOfSixWay(seen, maps, info, lights));
-    if (baked.six_way) storeSixWay(seen, maps, *baked.six_way);
+    if (baked.six_way) storeSixWay(seen, fitSixWay(seen, info, lights), *baked.six_way);
   });
+  watch.lap(report.seconds, "texels");
+
+  // Other lights than those of the fit, in frames from all sides.
+  TexelError fitted, stored, six_way;
+  const std::vector<Vec3> directions = bothSenses(judging.axes);
+  for (const int frame : someFrames(info, kJudgedFrames)) {
+    const SeenTexels seen = seenAt(frame, 1, set.axes, kNodes), judged = seenAt(frame, 1, judging.axes, kJudgingNodes);
+    const std::vector<TexelLobe> lobes = fitTexels(seen.light, lights, info.exponent, info.extinction);
+    const std::vector<float> maps = fitSixWay(seen, info, lights);
+    addTexelError(judged, judges, fitted,
+                  [&](size_t t, size_t l) { return texelLight(lobes[t], directions[l], info.exponent, info.extinction); });
+    addTexelError(judged, judges, stored, [&](size_t t, size_t l) {
+      return texelLight(storedTexel(baked.impostor, judged.texels[t]), directions[l], info.exponent, info.extinction);
+    });
+    addTexelError(judged, judges, six_way, [&](size_t t, size_t l) {
+      const FrameAxes axes = axesOfTexel(info, judged.texels[t]);
+      return sixWayLight(std::span(maps).subspan(6 * t, 6),
+                         {dot(axes.right, directions[l]), dot(axes.up, directions[l]), dot(axes.to_eye, directions[l])});
+    });
+  }
   fillEmptyTexels(baked.impostor);
   addMipLevels(baked.impostor);
   baked.figures.fitted = fitted.rms(), baked.figures.stored = stored.rms(), baked.figures.six_way = six_way.rms();
-  watch.lap(report.seconds, "texels");
+  watch.lap(report.seconds, "judge");
   return baked;
 }
 
@@ -185,7 +175,7 @@ Billboard billboardOf(const Impostor& impostor) {
       const auto place = [&](int pixel) { return (2 * (float(pixel) + 0.5F) / kSize - 1) * info.radius; };
       const Vec3 at = info.center + Vec3{place(x), -place(y), 0};
       const ImpostorPoint seen = view.at((at - eye) / length(at - eye), float(info.frame) / kSize);
-      const auto transmittance = [&](Vec3 to_light) { return lobeTransmittance(seen.lobe, to_light, info.shape, info.extinction); };
+      const auto transmittance = [&](Vec3 to_light) { return texelLight(seen.texel, to_light, info.exponent, info.extinction); };
       Image pixel = blankImage(1, 1);
       if (seen.opacity > 0)
         pixel.pixels[0] = cloudColor({std::min(1.0F, gain * transmittance(light.sky.to_sun)), transmittance({0, 1, 0})}, colors);
@@ -202,10 +192,10 @@ std::string impostorText(const BakedImpostor& baked) {
   const int size = info.views * info.frame;
   return fmt::format(
       "impostor    {} x {} views, frames of {} pixels: {} x {} pixels, of the {}\n"
-      "lobe        k {:.3g}, b {:.6g}, extinction {:.6g}\n"
+      "lobe        k {:.3g}, extinction {:.6g}\n"
       "light       rms {:.4f} of fitted lobes, {:.4f} as stored; {:.4f} of six-way maps\n",
-      info.views, info.views, info.frame, size, size, info.of == ImpostorOf::kMesh ? "mesh" : "volume", info.shape.exponent,
-      info.shape.bias, info.extinction, baked.figures.fitted, baked.figures.stored, baked.figures.six_way);
+      info.views, info.views, info.frame, size, size, info.of == ImpostorOf::kMesh ? "mesh" : "volume", info.exponent, info.extinction,
+      baked.figures.fitted, baked.figures.stored, baked.figures.six_way);
 }
 
 Json impostorJson(const BakedImpostor& baked) {
@@ -213,8 +203,7 @@ Json impostorJson(const BakedImpostor& baked) {
   return {{"views", info.views},
           {"frame", info.frame},
           {"of", info.of == ImpostorOf::kMesh ? "mesh" : "volume"},
-          {"exponent", shortest(info.shape.exponent)},
-          {"bias", shortest(info.shape.bias)},
+          {"exponent", shortest(info.exponent)},
           {"extinction", shortest(info.extinction)},
           {"texels", baked.figures.texels},
           {"rms_fitted", baked.figures.fitted},

@@ -47,7 +47,7 @@ ImpostorPoint ImpostorView::at(Vec3 direction, float texel_share) const {
   const ImpostorInfo& info = impostor_.info;
   const float level = std::log2(std::max(texel_share, 1e-6F)), half_texel = 0.5F / float(info.frame);
   Vec3 sum_direction;
-  float opacity = 0, thickness = 0, distance = 0;
+  float opacity = 0, thickness = 0, lit = 0, distance = 0;
   for (const Frame& frame : frames_) {
     if (!(frame.weight > 0)) continue;
     const float facing = dot(direction, frame.axes.to_eye), away = dot(eye_, frame.axes.to_eye);
@@ -69,15 +69,18 @@ ImpostorPoint ImpostorView::at(Vec3 direction, float texel_share) const {
     if (at.x < 0 || at.x > 1 || at.y < 0 || at.y > 1) continue;
     const float u = inAtlas(at, 0), v = inAtlas(at, 1);
     const Vec3 rest = trilinear(impostor_.rest, u, v, level);
-    const Lobe lobe = lobeOfTexel(trilinear(impostor_.direction, u, v, level), rest.x, info.thickest);
+    const Vec3 lobe = trilinear(impostor_.lobe, u, v, level);
     const float weight = frame.weight * rest.y;
-    sum_direction += lobe.direction * weight;
-    thickness += lobe.thickness * weight;
+    sum_direction += decodedDirection({lobe.x, lobe.y}, frame.axes) * weight;
+    thickness += lobe.z * lobe.z * info.thickest * weight;
+    lit += rest.x * weight;
     distance += ((1 - 2 * rest.z - away) / facing) * weight;
     opacity += weight;
   }
   if (!(opacity > 0)) return {};
-  return {{normalized(sum_direction).value_or(Vec3{0, -1, 0}), thickness / opacity}, opacity, distance * info.radius / opacity};
+  return {{{normalized(sum_direction).value_or(Vec3{0, -1, 0}), thickness / opacity}, lit / opacity},
+          opacity,
+          distance * info.radius / opacity};
 }
 
 namespace {
@@ -129,7 +132,7 @@ void addImpostor(Image4& channels, const Instance& instance, const Camera& camer
   left = std::max(left, 0), top = std::max(top, 0), right = std::min(right, camera.width - 1), bottom = std::min(bottom, camera.height - 1);
 
   const float scale = unitScale(instance.to_world), extinction = worldExtinction(instance, light);
-  const LobeShape shape{impostor.info.shape.exponent, impostor.info.shape.bias * scale};
+  const LobeShape shape{impostor.info.exponent, 0};
   const Vec3 center = transformPoint(instance.to_world, impostor.info.center), to_light = keyLight(light.sky).direction;
   const float step_x = float(camera.width) / float(channels.width), step_y = float(camera.height) / float(channels.height);
   const float texel_share = length(center - camera.look_from) * per_pixel * step_y / (2 * reach * scale) * float(impostor.info.frame);
@@ -140,19 +143,19 @@ void addImpostor(Image4& channels, const Instance& instance, const Camera& camer
   left = int(float(left) / step_x), right = std::min(int(float(right) / step_x), channels.width - 1);
   top = int(float(top) / step_y), bottom = std::min(int(float(bottom) / step_y), channels.height - 1);
   // An impostor has no colour of its own, and lamps do not shine on it.
-  const auto fieldsOf = [&](const Lobe& lobe) -> std::array<float, 2> {
+  const auto fieldsOf = [&](const TexelLobe& texel) -> std::array<float, 2> {
     if (light.shown == ShownLight::kOwnRedGreen) return {1, 1};
     if (light.shown == ShownLight::kOwnBlue) return {1, 0};
     if (light.shown != ShownLight::kSunAndSky) return {0, 0};
-    return {std::min(gain * lobeTransmittance(lobe, to_light, shape, extinction), 1.0F) * share,
-            lobeTransmittance(lobe, {0, 1, 0}, shape, extinction)};
+    const auto lightFrom = [&](Vec3 from) { return texel.lit * lobeTransmittance(texel.lobe, from, shape, extinction); };
+    return {std::min(gain * lightFrom(to_light), 1.0F) * share, lightFrom({0, 1, 0})};
   };
   parallelFor(top, bottom + 1, [&](int y) {
     for (int x = left; x <= right; ++x) {
       const Vec3 direction = rays.at((float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y).direction;
       const ImpostorPoint seen = view.at(transformVector(to_own, direction), texel_share);
       if (!(seen.opacity > 0)) continue;
-      const auto [red, green] = fieldsOf(mappedLobe(seen.lobe, instance.to_world));
+      const auto [red, green] = fieldsOf({mappedLobe(seen.texel.lobe, instance.to_world), seen.texel.lit});
       const float depth = (dot(direction, axes.forward) * seen.distance - range.near) / (range.far - range.near);
       Rgba& pixel = channels.at(x, y);
       pixel = over(pixel, {red, green, seen.opacity, std::max(0.0F, depth)});

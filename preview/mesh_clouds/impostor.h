@@ -14,7 +14,7 @@ namespace cloudbake {
 
 /// What a ray sees of an impostor, in its own space.
 struct ImpostorPoint {
-  Lobe lobe;
+  TexelLobe texel;
   float opacity = 0;
   float distance = 0;  ///< along the ray, in lengths of its direction
 };

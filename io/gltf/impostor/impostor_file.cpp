@@ -31,8 +31,7 @@ Json writeImpostorInfo(const ImpostorInfo& info) {
           {"center", numbersOf(info.center)},
           {"radius", shortest(info.radius)},
           {"box", {numbersOf(info.box.low), numbersOf(info.box.high)}},
-          {"exponent", shortest(info.shape.exponent)},
-          {"bias", shortest(info.shape.bias)},
+          {"exponent", shortest(info.exponent)},
           {"extinction", shortest(info.extinction)},
           {"thickest", shortest(info.thickest)},
           {"gains", info.gains},
@@ -62,7 +61,7 @@ struct Binary {
 ImpostorFiles encodeImpostor(const Impostor& impostor, const Billboard& billboard) {
   const ImpostorInfo& info = impostor.info;
   ImpostorFiles files;
-  files.direction_png = encodePng(impostor.direction[0]);
+  files.lobe_png = encodePng(impostor.lobe[0]);
   files.rest_png = encodePng(impostor.rest[0]);
 
   Binary binary;
@@ -86,7 +85,7 @@ ImpostorFiles encodeImpostor(const Impostor& impostor, const Billboard& billboar
     images.push_back({{"name", name}, {"mimeType", "image/png"}, {"bufferView", binary.add(png)}});
   };
   addImage("lit", encodeRgbaPng(billboard.size, billboard.size, billboard.rgba));
-  addImage("direction", files.direction_png);
+  addImage("lobe", files.lobe_png);
   addImage("rest", files.rest_png);
 
   // The material has the atlas in slots of linear values, so that loaders hand it over. An unlit material ignores them.
@@ -148,13 +147,13 @@ Impostor decodeImpostor(const std::filesystem::path& file, std::string_view byte
     info.center = vectorOf(own.at("center"));
     info.radius = own.at("radius").get<float>();
     info.box = {vectorOf(own.at("box").at(0)), vectorOf(own.at("box").at(1))};
-    info.shape = {own.at("exponent").get<float>(), own.at("bias").get<float>()};
+    info.exponent = own.at("exponent").get<float>();
     info.extinction = own.at("extinction").get<float>();
     info.thickest = own.at("thickest").get<float>();
     info.gains = own.at("gains").get<bool>();
     info.input_hash = own.at("input_hash").get<std::string>();
     for (const float number : {info.center.x, info.center.y, info.center.z, info.box.low.x, info.box.low.y, info.box.low.z, info.box.high.x,
-                               info.box.high.y, info.box.high.z, info.shape.exponent, info.shape.bias, info.extinction, info.thickest})
+                               info.box.high.y, info.box.high.z, info.exponent, info.extinction, info.thickest})
       if (!std::isfinite(number)) throw InputError(file.string(), "a number of the impostor is not finite in 32 bits");
     if (!(info.radius > 0) || !std::isfinite(info.radius)) throw InputError(file.string(), "the impostor's radius must be above 0");
     const auto picture = [&](const char* name) {
@@ -172,7 +171,7 @@ Impostor decodeImpostor(const std::filesystem::path& file, std::string_view byte
       throw InputError(file.string(), std::string("the impostor has no picture '") + name +
                                           "': a tool has removed it; use the file that `cloudbake impostor` wrote");
     };
-    Impostor impostor{info, {picture("direction")}, {picture("rest")}};
+    Impostor impostor{info, {picture("lobe")}, {picture("rest")}};
     addMipLevels(impostor);
     return impostor;
   } catch (const Json::exception& error) {

@@ -20,7 +20,7 @@ struct Billboard {
 
 /// What `cloudbake impostor` writes.
 struct ImpostorFiles {
-  std::string glb, direction_png, rest_png;
+  std::string glb, lobe_png, rest_png;
 };
 /// The same input gives the same bytes.
 ImpostorFiles encodeImpostor(const Impostor& impostor, const Billboard& billboard);
