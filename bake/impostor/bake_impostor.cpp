@@ -98,20 +98,21 @@ class FieldMarch {
     if (!(enter < leave)) return 0;
     const int steps = std::max(1, int(leave - enter));
     const float step = (leave - enter) / float(steps);
-    thread_local std::vector<float> passed;  // what comes through from the end of each step
-    passed.clear();
+    thread_local std::vector<float> depths;  // τ at the end of each step
+    depths.clear();
     float depth = 0;
     for (int s = 0; s < steps; ++s) {
-      depth += fractionAt(origin + ray.direction * (enter + (float(s) + 0.5F) * step));
-      passed.push_back(portableExp(-depth * per_step_ * step));
+      depth += fractionAt(origin + ray.direction * (enter + (float(s) + 0.5F) * step)) * per_step_ * step;
+      depths.push_back(depth);
     }
-    const float opacity = 1 - passed.back();
-    int s = 0;
+    if (depth == 0) return 0;
+    const float opacity = 1 - portableExp(-depth);
+    size_t s = 0;
     for (size_t n = 0; n < nodes.size(); ++n) {
-      const float wanted = 1 - opacity * (float(n) + 0.5F) / float(nodes.size());
-      while (s + 1 < steps && passed[size_t(s)] > wanted) ++s;
-      const float before = s > 0 ? passed[size_t(s - 1)] : 1, after = passed[size_t(s)];
-      const float within = before > after ? (before - wanted) / (before - after) : 0.5F;
+      const float wanted = -portableLog(1 - opacity * (float(n) + 0.5F) / float(nodes.size()));
+      while (s + 1 < depths.size() && depths[s] < wanted) ++s;
+      const float before = s > 0 ? depths[s - 1] : 0, after = depths[s];
+      const float within = after > before ? std::clamp((wanted - before) / (after - before), 0.0F, 1.0F) : 0.5F;
       nodes[n] = (enter + (float(s) + within) * step) * voxel;
     }
     return opacity;
@@ -264,7 +265,7 @@ std::pair<Vec3, float> ballAround(std::span<const Vec3> points) {
 
 namespace {
 
-constexpr int kRounds = 4;  // of lobes and factors; more gain less than a percent
+constexpr int kRounds = 5, kIterations = 3;  // of lobes and factors; more gain less than a percent
 
 // Where the light is darkest the bulk is.
 std::vector<Lobe> startsOf(std::span<const float> light, std::span<const Vec3> directions, float extinction) {
@@ -295,6 +296,7 @@ void fitRound(std::span<const float> light, std::span<const Vec3> directions, st
   FitSettings fit;
   fit.shape = {exponent, 0};
   fit.extinctions = {extinction};
+  fit.iterations = kIterations;
   std::vector<Lobe> starts;
   for (const TexelLobe& texel : texels) starts.push_back(texel.lobe);
   const std::vector<float> divided = dividedLight(light, texels);
