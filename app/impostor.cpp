@@ -6,6 +6,7 @@
 #include "io/file/write_file.h"
 #include "io/image/image.h"
 #include "pipeline/impostor/impostor.h"
+#include "pipeline/impostor/picture_figures.h"
 
 namespace cloudbake {
 
@@ -38,10 +39,16 @@ ExitCode runImpostor(const CommandLine& line) {
   report.output = (folder / written.front().first).string();
   watch.lap(report.seconds, "write");
   std::string text = impostorText(baked);
+  Json json = impostorJson(baked);
+  if (settings.impostor.measure) {
+    const std::vector<SizeFigures> figures = pictureFigures(settings, baked, report);
+    watch.lap(report.seconds, "measure");
+    text += pictureFiguresText(figures);
+    json["pictures"] = pictureFiguresJson(figures);
+  }
   for (size_t i = 0; i < written.size(); ++i) {
     text += "wrote       " + (folder / written[i].first).string() + "  " + std::to_string(written[i].second.size()) + " bytes\n";
   }
-  Json json = impostorJson(baked);
   json["files"] = names;
   tellReport(settings.run, report, {{"impostor", json}}, text);
   return ExitCode::kDone;

@@ -185,6 +185,7 @@ struct ImpostorSettings {
   ImpostorOf of = ImpostorOf::kVolume;
   float half_lambert = 1;  ///< of an impostor of the mesh: f of lerp(f, 1, n·l/2 + ½)
   bool six_way = false;
+  bool measure = false;  ///< compares pictures
 };
 
 /// The largest errors against exact chords that an asset may have.

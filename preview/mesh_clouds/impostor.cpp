@@ -24,15 +24,15 @@ Vec3 bilinear(const Image& image, float u, float v) {
   return (at(0, 0) * (1 - a) + at(1, 0) * a) * (1 - b) + (at(0, 1) * (1 - a) + at(1, 1) * a) * b;
 }
 
-Vec3 trilinear(const std::vector<Image>& levels, float u, float v, float level) {
+}  // namespace
+
+Vec3 filtered(const std::vector<Image>& levels, float u, float v, float level) {
   const float clamped = std::clamp(level, 0.0F, float(levels.size() - 1));
   const auto fine = size_t(clamped);
   const float share = clamped - float(fine);
   const Vec3 value = bilinear(levels[fine], u, v);
   return share > 0 ? value * (1 - share) + bilinear(levels[fine + 1], u, v) * share : value;
 }
-
-}  // namespace
 
 ImpostorView::ImpostorView(const Impostor& impostor, Vec3 eye)
     : impostor_(impostor), eye_((eye - impostor.info.center) / impostor.info.radius) {
@@ -43,40 +43,41 @@ ImpostorView::ImpostorView(const Impostor& impostor, Vec3 eye)
   }
 }
 
-ImpostorPoint ImpostorView::at(Vec3 direction, float texel_share) const {
+void ImpostorView::forFrames(Vec3 direction, float texel_share, FunctionRef<void(const AtlasPlace&)> visit) const {
   const ImpostorInfo& info = impostor_.info;
   const float level = std::log2(std::max(texel_share, 1e-6F)), half_texel = 0.5F / float(info.frame);
-  Vec3 sum_direction;
-  float opacity = 0, thickness = 0, lit = 0, distance = 0;
   for (const Frame& frame : frames_) {
-    if (!(frame.weight > 0)) continue;
     const float facing = dot(direction, frame.axes.to_eye), away = dot(eye_, frame.axes.to_eye);
-    if (!(facing < 0)) continue;
-    // Where the ray is at a height over the frame's plane, and the place in the atlas there.
-    float t = 0;
-    const auto placeAt = [&](float height) {
-      t = (height - away) / facing;
-      const Vec3 p = eye_ + direction * t;
+    if (!(frame.weight > 0) || !(facing < 0)) continue;
+    const auto placeAt = [&](float height) {  // where the ray is at this height over the frame's plane
+      const Vec3 p = eye_ + direction * ((height - away) / facing);
       return Vec2{0.5F + 0.5F * dot(p, frame.axes.right), 0.5F - 0.5F * dot(p, frame.axes.up)};
     };
-    const auto inAtlas = [&](Vec2 at, int axis) {
-      const float within = std::clamp(axis == 0 ? at.x : at.y, half_texel, 1 - half_texel);
-      return (float(axis == 0 ? frame.i : frame.j) + within) / float(info.views);
+    const auto inAtlas = [&](float within, int index) {
+      return (float(index) + std::clamp(within, half_texel, 1 - half_texel)) / float(info.views);
     };
     const Vec2 flat = placeAt(0);
-    const Vec3 first = trilinear(impostor_.rest, inAtlas(flat, 0), inAtlas(flat, 1), level);
+    const Vec3 first = filtered(impostor_.rest, inAtlas(flat.x, frame.i), inAtlas(flat.y, frame.j), level);
     const Vec2 at = placeAt(1 - 2 * first.z);
     if (at.x < 0 || at.x > 1 || at.y < 0 || at.y > 1) continue;
-    const float u = inAtlas(at, 0), v = inAtlas(at, 1);
-    const Vec3 rest = trilinear(impostor_.rest, u, v, level);
-    const Vec3 lobe = trilinear(impostor_.lobe, u, v, level);
-    const float weight = frame.weight * rest.y;
-    sum_direction += decodedDirection({lobe.x, lobe.y}, frame.axes) * weight;
-    thickness += lobe.z * lobe.z * info.thickest * weight;
-    lit += rest.x * weight;
-    distance += ((1 - 2 * rest.z - away) / facing) * weight;
-    opacity += weight;
+    const float u = inAtlas(at.x, frame.i), v = inAtlas(at.y, frame.j);
+    const Vec3 rest = filtered(impostor_.rest, u, v, level);
+    if (rest.y > 0) visit({frame.axes, u, v, level, rest, frame.weight * rest.y, (1 - 2 * rest.z - away) / facing});
   }
+}
+
+ImpostorPoint ImpostorView::at(Vec3 direction, float texel_share) const {
+  const ImpostorInfo& info = impostor_.info;
+  Vec3 sum_direction;
+  float opacity = 0, thickness = 0, lit = 0, distance = 0;
+  forFrames(direction, texel_share, [&](const AtlasPlace& place) {
+    const Vec3 lobe = filtered(impostor_.lobe, place.u, place.v, place.level);
+    sum_direction += decodedDirection({lobe.x, lobe.y}, place.axes) * place.weight;
+    thickness += lobe.z * lobe.z * info.thickest * place.weight;
+    lit += place.rest.x * place.weight;
+    distance += place.distance * place.weight;
+    opacity += place.weight;
+  });
   if (!(opacity > 0)) return {};
   return {{{normalized(sum_direction).value_or(Vec3{0, -1, 0}), thickness / opacity}, lit / opacity},
           opacity,

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "core/function_ref.h"
 #include "core/image.h"
 #include "core/impostor.h"
 #include "preview/camera.h"
@@ -19,6 +20,19 @@ struct ImpostorPoint {
   float distance = 0;  ///< along the ray, in lengths of its direction
 };
 
+/// The place in an atlas that one of the three frames has for a ray.
+struct AtlasPlace {
+  const FrameAxes& axes;
+  float u = 0, v = 0;  ///< of the atlas, 0 … 1
+  float level = 0;     ///< mip level
+  Vec3 rest;           ///< of Impostor::rest there
+  float weight = 0;    ///< of the frame times the opacity
+  float distance = 0;  ///< along the ray, in radii and lengths of its direction
+};
+
+/// A picture of an atlas as GPUs filter it: linearly between texels and between mip levels.
+Vec3 filtered(const std::vector<Image>& levels, float u, float v, float level);
+
 /// An impostor and where it is seen from, in its own space: the eye must be outside of its ball.
 class ImpostorView {
  public:
@@ -26,6 +40,8 @@ class ImpostorView {
   /// `direction` need not be a unit vector. `texel_share`: texels of the finest pictures per pixel of the camera, which chooses the mip
   /// level.
   ImpostorPoint at(Vec3 direction, float texel_share) const;
+  /// Calls visit for each frame in which the ray sees something.
+  void forFrames(Vec3 direction, float texel_share, FunctionRef<void(const AtlasPlace&)> visit) const;
 
  private:
   struct Frame {
