@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/lobe_lighting.h"
+
 namespace cloudbake {
 
 namespace {
@@ -19,6 +21,10 @@ Image halved(const Image& image) {
 }
 
 }  // namespace
+
+float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction) {
+  return texel.lit * lobeTransmittance(texel.lobe, to_light, {exponent, 0}, extinction);
+}
 
 Impostor blankImpostor(const ImpostorInfo& info) {
   const Image image = blankImage(info.views * info.frame, info.views * info.frame);
@@ -74,6 +80,11 @@ std::array<FrameWeight, 3> framesAround(Vec3 to_eye, int views) {
   const float x = std::clamp((at.x + 1) / 2 * last, 0.0F, last), y = std::clamp((at.y + 1) / 2 * last, 0.0F, last);
   const int i = std::min(int(x), views - 2), j = std::min(int(y), views - 2);
   const float u = x - float(i), v = y - float(j);
+  // A cell is two triangles. Of its diagonals, the one along which the octahedron has an edge's length divides it: the other is √3 as long.
+  if ((2 * i + 1 < views - 1) == (2 * j + 1 < views - 1)) {
+    if (u + v < 1) return {{{i, j, 1 - u - v}, {i + 1, j, u}, {i, j + 1, v}}};
+    return {{{i + 1, j + 1, u + v - 1}, {i + 1, j, 1 - v}, {i, j + 1, 1 - u}}};
+  }
   const FrameWeight side = u > v ? FrameWeight{i + 1, j, u - v} : FrameWeight{i, j + 1, v - u};
   return {{{i, j, 1 - std::max(u, v)}, side, {i + 1, j + 1, std::min(u, v)}}};
 }

@@ -20,7 +20,7 @@ enum class ImpostorOf {
 
 /// Lengths are scene units, directions have scene axes.
 struct ImpostorInfo {
-  int views = 8;   ///< N: the atlas has N × N frames, ≥ 2
+  int views = 9;   ///< N: the atlas has N × N frames, ≥ 2
   int frame = 64;  ///< pixels to a side of a frame
   ImpostorOf of = ImpostorOf::kVolume;
   Vec3 center;             ///< of the ball that each frame shows
@@ -39,6 +39,9 @@ struct TexelLobe {
   Lobe lobe;
   float lit = 1;  ///< 0 … 1
 };
+
+/// What light a texel shows from a unit direction to the light, 0 … 1.
+float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction);
 
 /// The two pictures of an atlas, and their mip levels: means of 2 × 2 texels, down to kLeastFrame texels to a side of a frame. Frame (i, j)
 /// is i frames from the left and j from the top. All values are 0 … 1; those of the pictures are in steps of 1/255.

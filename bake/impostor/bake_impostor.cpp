@@ -321,10 +321,6 @@ std::vector<TexelLobe> firstTexels(std::span<const float> light, std::span<const
 
 }  // namespace
 
-float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction) {
-  return texel.lit * lobeTransmittance(texel.lobe, to_light, {exponent, 0}, extinction);
-}
-
 std::vector<TexelLobe> fitTexels(std::span<const float> light, const ImpostorLights& lights, float exponent, float extinction) {
   const std::vector<Vec3> directions = bothSenses(lights.axes);
   std::vector<TexelLobe> texels = firstTexels(light, directions, extinction);

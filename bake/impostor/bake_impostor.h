@@ -52,9 +52,6 @@ std::vector<TexelLobe> fitTexels(std::span<const float> light, const ImpostorLig
 /// k for all texels, from about `most` of them.
 float fitTexelExponent(std::span<const float> light, const ImpostorLights& lights, float start, float extinction, size_t most);
 
-/// What light a texel shows from a unit direction to the light.
-float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction);
-
 /// The mean of (shown − light)² over lights by weight and texels by opacity: its root is the rms.
 struct TexelError {
   double squares = 0, weight = 0;

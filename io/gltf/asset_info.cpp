@@ -258,7 +258,14 @@ void refuseInfinite(const Json& value, const std::string& name) {
 
 }  // namespace
 
+bool isImpostorDocument(const Json& document) {
+  const Json* record = findRecord(document);
+  return record && record->is_object() && record->contains("layout") && (*record)["layout"] == kImpostorLayout;
+}
+
 AssetInfo requireInfo(const std::filesystem::path& file, const Json& document) {
+  if (isImpostorDocument(document))
+    throw InputError(file.string(), "is an impostor, which is pictures and no mesh: give the baked asset that it was made of");
   try {
     const Json& record = recordOf(document);
     AssetInfo info = parseInfo(record);

@@ -9,6 +9,10 @@
 
 namespace cloudbake {
 
+/// The layout of lobe impostors (io/gltf/impostor/impostor_file.h), which are no baked assets.
+inline constexpr const char* kImpostorLayout = "lobe-impostor";
+bool isImpostorDocument(const Json& document);
+
 /// A whole number. Throws Json::type_error for any other value; get<int>() would cast 1e39. A number above 2⁶³ wraps.
 int64_t wholeNumber(const Json& value);
 /// The same for a member of an object; `fallback` if it is missing.

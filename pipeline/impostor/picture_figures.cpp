@@ -21,7 +21,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kViews = 60, kSuns = 24, kSunsPerView = 4, kTurns = 24;
+constexpr int kViews = 60, kSuns = 24, kSunsPerView = 2, kTurns = 24;
 constexpr std::array<int, 5> kSizes{200, 128, 64, 32, 16};
 constexpr int kFinest = 256;  // pixels of the pictures whose means are those of smaller sizes
 constexpr float kFieldOfView = 3;
@@ -48,35 +48,6 @@ Image resized(const Image& image, int pixels) {
         for (int u = int(x * scale); u < image.width && u < (x + 1) * scale; ++u)
           small.at(x, y) += image.at(u, v) * float(share(u, x) * share(v, y));
   return small;
-}
-
-// A picture as an engine draws a quad: one sample per pixel. `lightOf` gives the light of sun and sky at a ray.
-template <class LightOf>
-Image drawnQuad(const Camera& camera, const LightSettings& light, const LightOf& lightOf) {
-  const Image sky = renderSky(camera, light.sky, 1);
-  const SkyColors colors = lightColors(light.sky);
-  const CameraRays rays(camera);
-  Image image = sky;
-  parallelFor(camera.height, [&](int y) {
-    for (int x = 0; x < camera.width; ++x) {
-      const auto [shade, opacity] = lightOf(rays.at(float(x) + 0.5F, float(y) + 0.5F).direction);
-      image.at(x, y) = sky.at(x, y) * (1 - opacity) + cloudColor(shade, colors) * opacity;
-    }
-  });
-  return image;
-}
-
-using Seen = std::pair<Shade, float>;  // and the opacity
-
-Image drawnImpostor(const Impostor& impostor, const Camera& camera, const LightSettings& light) {
-  const ImpostorView view(impostor, camera.look_from);
-  const float share = float(impostor.info.frame) / float(camera.height);
-  const Vec3 sun = keyLight(light.sky).direction;
-  return drawnQuad(camera, light, [&](Vec3 direction) -> Seen {
-    const ImpostorPoint seen = view.at(direction, share);
-    const auto from = [&](Vec3 to_light) { return texelLight(seen.texel, to_light, impostor.info.exponent, impostor.info.extinction); };
-    return {{from(sun), from({0, 1, 0})}, seen.opacity};
-  });
 }
 
 // The six maps of an atlas, with mip levels.
@@ -112,7 +83,7 @@ Image drawnSixWay(const SixWayAtlas& atlas, const Camera& camera, const LightSet
   const ImpostorView view(atlas.impostor, camera.look_from);
   const float share = float(atlas.impostor.info.frame) / float(camera.height);
   const Vec3 sun = keyLight(light.sky).direction;
-  return drawnQuad(camera, light, [&](Vec3 direction) -> Seen {
+  return renderQuad(camera, light, [&](Vec3 direction) -> QuadPoint {
     Shade sum;
     float opacity = 0;
     view.forFrames(direction, share, [&](const AtlasPlace& place) {
@@ -202,7 +173,7 @@ std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImp
         const Camera camera = cameraFrom(info, to_eye, kSizes[size]);
         const auto shownAt = [&](const Image& image) { return toneMap(resized(image, kSizes[size])); };
         const Image truth = shownAt(of_volume), opaque = shownAt(of_mesh), gentle = shownAt(of_soft),
-                    quad = toneMap(drawnImpostor(baked.impostor, camera, light)), six = toneMap(drawnSixWay(six_way, camera, light));
+                    quad = toneMap(renderImpostor(baked.impostor, camera, light)), six = toneMap(drawnSixWay(six_way, camera, light));
         const std::vector<bool> shows = shownIn({&truth, &opaque, &quad}, shownAt(sky));
         sums[size][0].add(quad, truth, shows), sums[size][1].add(six, truth, shows), sums[size][2].add(opaque, truth, shows);
         sums[size][3].add(gentle, truth, shows), sums[size][4].add(quad, opaque, shows);
@@ -222,7 +193,7 @@ std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImp
       for (int next = 0; next < 2; ++next) {
         const Vec3 to_eye = directionFromAngles(float(360 * turn / kTurns + next), 12);
         const Camera camera = cameraFrom(info, to_eye, kSizes[size]), finest = cameraFrom(info, to_eye, kFinest);
-        quads[size_t(next)] = toneMap(drawnImpostor(baked.impostor, camera, light));
+        quads[size_t(next)] = toneMap(renderImpostor(baked.impostor, camera, light));
         meshes[size_t(next)] = toneMap(resized(renderLobe(mesh, finest, light), kSizes[size]));
         sky = toneMap(renderSky(camera, light.sky, 1));
       }

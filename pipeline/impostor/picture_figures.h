@@ -18,7 +18,7 @@ struct SizeFigures {
   double next_frame = 0, mesh_next_frame = 0;  ///< how much pictures change from one degree of a turn to the next: impostor, mesh
 };
 
-/// Pictures of 60 views with 4 of 24 suns each, in the plain look; the judge is renderVolume (preview/compare/volume.h).
+/// Pictures of 60 views with 2 of 24 suns each, in the plain look; the judge is renderVolume (preview/compare/volume.h).
 std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImpostor& baked, BakeReport& report);
 
 std::string pictureFiguresText(const std::vector<SizeFigures>& figures);

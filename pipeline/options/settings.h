@@ -181,7 +181,7 @@ struct ShadowPictureSettings {
 
 /// The atlas that `impostor` writes.
 struct ImpostorSettings {
-  int views = 8, frame = 64;  ///< frames to a side of the atlas, and pixels to a side of a frame
+  int views = 9, frame = 64;  ///< frames to a side of the atlas, and pixels to a side of a frame
   ImpostorOf of = ImpostorOf::kVolume;
   float half_lambert = 1;  ///< of an impostor of the mesh: f of lerp(f, 1, n·l/2 + ½)
   bool six_way = false;

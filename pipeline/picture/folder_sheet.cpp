@@ -11,6 +11,7 @@
 #include "core/memory_budget.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
+#include "io/gltf/impostor/impostor_file.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/picture/picture.h"
 #include "preview/compare/lettering.h"
@@ -26,7 +27,8 @@ std::string kindOf(const fs::path& file) {
   const SourceKind kind = sourceKindOf(file);
   if (kind == SourceKind::kVolume) return "volume";
   if (isGrown(kind)) return "recipe";
-  return isBakedAsset(file, readFileBytes(file)) ? "baked asset" : "sculpt";
+  const std::string bytes = readFileBytes(file);
+  return isImpostor(bytes) ? "impostor" : isBakedAsset(file, bytes) ? "baked asset" : "sculpt";
 }
 
 // The text of an error without the folder of its file, which the title of the panel has, and without its name where no line follows.

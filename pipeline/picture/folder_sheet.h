@@ -21,7 +21,7 @@ namespace cloudbake {
 /// A file of the folder, and what came of it.
 struct FolderPanel {
   std::string name;     ///< relative to the folder
-  std::string kind;     ///< "baked asset", "sculpt", "volume", "recipe"
+  std::string kind;     ///< "baked asset", "impostor", "sculpt", "volume", "recipe"
   size_t vertices = 0;  ///< of what was drawn
   int code = 0;         ///< the exit code that its failure alone would have
   std::string error{};  ///< what is wrong with it, and the cure

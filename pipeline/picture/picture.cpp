@@ -28,6 +28,7 @@
 #include "pipeline/picture/picture_memory.h"
 #include "pipeline/picture/scene_shadows.h"
 #include "pipeline/sources/grown.h"
+#include "preview/mesh_clouds/impostor.h"
 #include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
@@ -319,7 +320,9 @@ Image drawPicture(const SceneFile& scene, std::span<const Instance> instances, c
   const Camera camera = cameraFor(scene, instances, turn.now);
   requirePictureMemory(scene, withLevels(instances, camera), camera);
   if (scene.view.plain) {
-    return dithered(toneMap(renderLobe(*instances.front().mesh, camera, scene.light), scene.view.exposure));
+    const BakedMesh& mesh = *instances.front().mesh;
+    return dithered(toneMap(mesh.impostor ? renderImpostor(*mesh.impostor, camera, scene.light) : renderLobe(mesh, camera, scene.light),
+                            scene.view.exposure));
   }
   DrawnParts parts;
   Image picture = drawScene(scene, instances, turn, parts);
@@ -371,7 +374,8 @@ Scenery bakeScenery(const Settings& settings, std::span<const Given> given, Bake
   std::vector<Given> of_bake;
   std::copy_if(given.begin(), given.end(), std::back_inserter(of_bake), [](const Given& one) { return needsWatch(*one.option); });
   Scenery scenery;
-  if (source.kind != SourceKind::kSculpt || !isBakedAsset(source.input, readFileBytes(source.input)))
+  const auto isBaked = [&](const std::string& bytes) { return isBakedAsset(source.input, bytes) || isImpostor(bytes); };
+  if (source.kind != SourceKind::kSculpt || !isBaked(readFileBytes(source.input)))
     scenery.meshes.emplace(source.input.string(), bakedMesh(source, of_bake, report));
   else if (!of_bake.empty())
     throw UsageError(fmt::format("--{}: {} is baked already, and is shown as it is: leave this out, or watch the sculpt",

@@ -84,6 +84,33 @@ ImpostorPoint ImpostorView::at(Vec3 direction, float texel_share) const {
           distance * info.radius / opacity};
 }
 
+Image renderQuad(const Camera& camera, const LightSettings& light, FunctionRef<QuadPoint(Vec3 direction)> at) {
+  const SkyColors colors = lightColors(light.sky);
+  const CameraRays rays(camera);
+  Image image = renderSky(camera, light.sky, light.samples_per_side);
+  parallelFor(camera.height, [&](int y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const QuadPoint seen = at(rays.at(float(x) + 0.5F, float(y) + 0.5F).direction);
+      image.at(x, y) = image.at(x, y) * (1 - seen.opacity) + cloudColor(seen.shade, colors) * seen.opacity;
+    }
+  });
+  return image;
+}
+
+Image renderImpostor(const Impostor& impostor, const Camera& camera, const LightSettings& light) {
+  const ImpostorInfo& info = impostor.info;
+  if (length(camera.look_from - info.center) <= info.radius) return renderSky(camera, light.sky, light.samples_per_side);
+  const ImpostorView view(impostor, camera.look_from);
+  const float per_pixel = 2 * std::tan(camera.vertical_fov_degrees * float(kPi / 360)) / float(camera.height);
+  const float share = length(camera.look_from - info.center) * per_pixel / (2 * info.radius) * float(info.frame);
+  const Vec3 sun = keyLight(light.sky).direction;
+  return renderQuad(camera, light, [&](Vec3 direction) -> QuadPoint {
+    const ImpostorPoint seen = view.at(direction, share);
+    const auto from = [&](Vec3 to_light) { return texelLight(seen.texel, to_light, info.exponent, info.extinction); };
+    return {{from(sun), from({0, 1, 0})}, seen.opacity};
+  });
+}
+
 namespace {
 
 /// An instance that is an impostor, ready to be drawn.

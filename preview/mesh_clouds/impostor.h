@@ -54,6 +54,16 @@ class ImpostorView {
   std::array<Frame, 3> frames_;
 };
 
+/// The light of a cloud at a pixel, and its opacity.
+struct QuadPoint {
+  Shade shade;
+  float opacity = 0;
+};
+/// A picture over the sky as an engine draws a quad, with one sample per pixel; `at` gives what a ray of the camera sees. Linear colours.
+Image renderQuad(const Camera& camera, const LightSettings& light, FunctionRef<QuadPoint(Vec3 direction)> at);
+/// The impostor in its own space, lit by sun and sky without a factor of the surface.
+Image renderImpostor(const Impostor& impostor, const Camera& camera, const LightSettings& light);
+
 /// Adds the instances that are impostors to the channels of the others, pixel by pixel, nearer clouds before farther ones. The eye of a
 /// camera inside of an impostor's ball does not see it.
 void addImpostors(Image4& channels, std::span<const Instance> instances, const Camera& camera, const LightSettings& light,

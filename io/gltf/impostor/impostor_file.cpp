@@ -15,7 +15,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr const char* kLayout = "lobe-impostor";
 constexpr int kVersion = 1;
 constexpr int kLargestAtlas = 16384;  // pixels to a side: the largest picture that GPUs take
 
@@ -23,7 +22,7 @@ Json numbersOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 Vec3 vectorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }
 
 Json writeImpostorInfo(const ImpostorInfo& info) {
-  return {{"layout", kLayout},
+  return {{"layout", kImpostorLayout},
           {"version", kVersion},
           {"views", info.views},
           {"frame", info.frame},
@@ -122,7 +121,7 @@ ImpostorFiles encodeImpostor(const Impostor& impostor, const Billboard& billboar
 bool isImpostor(std::string_view bytes) {
   try {
     const auto json = parseJson(splitGlb("", bytes).json);
-    return json && json->at("asset").at("extras").at("cloudbake").at("layout") == kLayout;
+    return json && isImpostorDocument(*json);
   } catch (const std::exception&) {
     return false;
   }
@@ -135,7 +134,7 @@ Impostor decodeImpostor(const std::filesystem::path& file, std::string_view byte
     if (!parsed) throw InputError(file.string(), "its JSON is damaged");
     const Json& json = *parsed;
     const Json& own = json.at("asset").at("extras").at("cloudbake");
-    if (own.at("layout") != kLayout) throw InputError(file.string(), "is not a lobe impostor: make one with `cloudbake impostor`");
+    if (own.at("layout") != kImpostorLayout) throw InputError(file.string(), "is not a lobe impostor: make one with `cloudbake impostor`");
     if (wholeNumber(own.at("version")) != kVersion)
       throw InputError(file.string(), "is an impostor of another version of the layout: make it again with `cloudbake impostor`");
     ImpostorInfo info;

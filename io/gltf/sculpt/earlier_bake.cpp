@@ -202,6 +202,8 @@ void cutBytes(GltfDocument& document, size_t buffer, const Numbers& free_views) 
 
 void removeEarlierBake(GltfDocument& document) {
   Json& json = document.json;
+  if (isImpostorDocument(json))
+    throw InputError(document.file.string(), "is an impostor, which is pictures and no mesh: give the sculpt or the baked asset");
   const auto info = readInfo(json);
   if (!info) return;
   document.was_baked = true;
