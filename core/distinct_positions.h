@@ -9,6 +9,13 @@
 
 namespace cloudbake {
 
+/// Equal positions have the same hash, −0 and 0 too. Its low bits are good enough for a table.
+inline uint64_t hashOfPosition(const Vec3& p) {
+  uint64_t hash = 0;
+  for (const float f : {p.x, p.y, p.z}) hash = (hash ^ std::bit_cast<uint32_t>(f + 0.0F)) * 0x9E3779B97F4A7C15ULL;
+  return hash ^ (hash >> 29);
+}
+
 /// Distinct positions in order of their first use, found by a hash table with linear probing. −0 equals 0; the first of them is kept.
 class DistinctPositions {
  public:
@@ -33,10 +40,8 @@ class DistinctPositions {
 
   // The slot of p, or the free one where it belongs.
   size_t slotOf(const Vec3& p) const {
-    uint64_t hash = 0;
-    for (const float f : {p.x, p.y, p.z}) hash = (hash ^ std::bit_cast<uint32_t>(f + 0.0F)) * 0x9E3779B97F4A7C15ULL;
     const size_t mask = table_.size() - 1;
-    size_t slot = (hash ^ (hash >> 29)) & mask;
+    size_t slot = hashOfPosition(p) & mask;
     while (table_[slot] != kFree && !(positions[table_[slot]] == p)) slot = (slot + 1) & mask;
     return slot;
   }

@@ -16,12 +16,14 @@
 #include <bit>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "core/random.h"
 
 namespace cloudbake {
 
 namespace {
 
+constexpr size_t kTogether = 1 << 16;
 constexpr uint64_t kMeshSeed = 0x6D657368, kConstantsSeed = 0x636F6E73, kSketchSeed = 0x736B6574;
 
 uint64_t hashedFloat(uint64_t key, float value) { return mix64(key ^ std::bit_cast<uint32_t>(value + 0.0F)) + kGolden64; }
@@ -34,8 +36,18 @@ uint64_t hashOfTriangle(std::array<uint64_t, 3> corners) {
   return mix64(key);
 }
 
+// By tables of signs, because conditions would be mispredicted half of the time.
 void addSigned(std::array<double, kSketchSize>& sums, uint64_t signs, double value) {
-  for (size_t j = 0; j < sums.size(); ++j) sums[j] += signs >> j & 1 ? value : -value;
+  constexpr uint64_t kMinus = uint64_t(1) << 63;
+  static constexpr auto kSigns = [] {  // of four sums; a bit of 1 means +
+    std::array<std::array<uint64_t, 4>, 16> table{};
+    for (size_t bits = 0; bits < table.size(); ++bits)
+      for (size_t i = 0; i < 4; ++i) table[bits][i] = bits >> i & 1 ? 0 : kMinus;
+    return table;
+  }();
+  const auto bits = std::bit_cast<uint64_t>(value);
+  for (size_t j = 0; j < sums.size(); j += 4, signs >>= 4)
+    for (size_t i = 0; i < 4; ++i) sums[j + i] += std::bit_cast<double>(bits ^ kSigns[signs & 15][i]);
 }
 
 std::array<float, kSketchSize> inUnits(const std::array<double, kSketchSize>& sums, double unit) {
@@ -71,66 +83,105 @@ double relativeDifference(std::span<const float> a, std::span<const float> b, do
 
 }  // namespace
 
-void SealMaker::add(const SculptPart& part, std::span<const LobeUvs> uvs, std::span<const float> harmonics) {
-  std::vector<uint64_t> keys;
-  std::vector<std::array<double, 3>> places;
-  for (size_t v = 0; v < part.positions.size(); ++v) {
-    keys.push_back(pointStream(kSketchSeed, part.positions[v]));
-    // In double, because GCC 12 at -O3 leaves out the rounding to float of a place that is used in double, and other levels do not.
-    std::array<double, 3> place = preciseTransformPoint(part.toScene(v), part.positions[v]);
-    if (!has_origin_) origin_ = place, has_origin_ = true;
-    for (size_t i = 0; i < 3; ++i) place[i] -= origin_[i];
-    places.push_back(place);
-  }
+void SealMaker::Sums::operator+=(const Sums& other) {
+  const auto add = [](auto& sums, const auto& more) {
+    for (size_t i = 0; i < sums.size(); ++i) sums[i] += more[i];
+  };
+  mesh += other.mesh;
+  area += other.area;
+  add(first, other.first), add(second, other.second), add(lobes, other.lobes), add(harmonics, other.harmonics);
+}
 
-  std::vector<uint32_t> uses(keys.size(), 0);
-  for (const Triangle& t : part.triangles) {
-    const std::array<uint64_t, 3> corners{keys[t[0]], keys[t[1]], keys[t[2]]};
-    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;  // optimisers drop those
-    mesh_ += hashOfTriangle(corners);
+// The blocks do not depend on the threads, and their sums are added in order.
+template <class Add>
+void SealMaker::addInBlocks(size_t count, const Add& add) {
+  std::vector<Sums> blocks((count + kTogether - 1) / kTogether);
+  parallelFor(blocks.size(), [&](size_t block) {
+    Sums sums;
+    for (size_t i = block * kTogether; i < std::min(count, (block + 1) * kTogether); ++i) add(i, sums);
+    blocks[block] = sums;
+  });
+  for (const Sums& sums : blocks) sums_ += sums;
+}
+
+void SealMaker::add(const SculptPart& part, std::span<const LobeUvs> uvs, std::span<const float> harmonics) {
+  const size_t count = part.positions.size();
+  if (count == 0) return;
+  // In double, because GCC 12 at -O3 leaves out the rounding to float of a place that is used in double, and other levels do not.
+  const auto in_scene = [&](size_t v) { return preciseTransformPoint(part.toScene(v), part.positions[v]); };
+  if (!has_origin_) origin_ = in_scene(0), has_origin_ = true;
+  const auto place_of = [&](size_t v) {
+    std::array<double, 3> place = in_scene(v);
+    for (size_t i = 0; i < 3; ++i) place[i] -= origin_[i];
+    return place;
+  };
+  std::vector<uint64_t> keys(count);
+  parallelBlocks(count, kTogether, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) keys[v] = pointStream(kSketchSeed, part.positions[v]);
+  });
+  const auto keys_of = [&](const Triangle& t) { return std::array{keys[t[0]], keys[t[1]], keys[t[2]]}; };
+  const auto is_dropped = [](const std::array<uint64_t, 3>& c) { return c[0] == c[1] || c[1] == c[2] || c[2] == c[0]; };  // by optimisers
+
+  addInBlocks(part.triangles.size(), [&](size_t f, Sums& sums) {
+    const Triangle& t = part.triangles[f];
+    const std::array<uint64_t, 3> corners = keys_of(t);
+    if (is_dropped(corners)) return;
+    sums.mesh += hashOfTriangle(corners);
+    const std::array<std::array<double, 3>, 3> places{place_of(t[0]), place_of(t[1]), place_of(t[2])};
     std::array<double, 3> u, w, sum;
     for (size_t i = 0; i < 3; ++i) {
-      u[i] = places[t[1]][i] - places[t[0]][i], w[i] = places[t[2]][i] - places[t[0]][i];
-      sum[i] = places[t[0]][i] + places[t[1]][i] + places[t[2]][i];
+      u[i] = places[1][i] - places[0][i], w[i] = places[2][i] - places[0][i];
+      sum[i] = places[0][i] + places[1][i] + places[2][i];
     }
     const double x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2], z = u[0] * w[1] - u[1] * w[0];
     const double area = std::sqrt(x * x + y * y + z * z) / 2;
-    area_ += area;
-    for (size_t i = 0; i < 3; ++i) first_[i] += area / 3 * sum[i];
+    sums.area += area;
+    for (size_t i = 0; i < 3; ++i) sums.first[i] += area / 3 * sum[i];
     constexpr std::array<std::array<size_t, 2>, 6> kPairs{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
     for (size_t k = 0; k < kPairs.size(); ++k) {
       const auto [i, j] = kPairs[k];
       double products = sum[i] * sum[j];
-      for (const uint32_t v : t) products += places[v][i] * places[v][j];
-      second_[k] += area / 12 * products;
+      for (const std::array<double, 3>& place : places) products += place[i] * place[j];
+      sums.second[k] += area / 12 * products;
     }
-    for (const uint32_t v : t) ++uses[v];
-  }
+  });
+
+  // Every thread reads all triangles, of which most have all corners at one thread's vertices.
+  std::vector<uint32_t> uses(count, 0);
+  const size_t parts = std::clamp<size_t>(count / kTogether, 1, threadCount());
+  parallelFor(parts, [&](size_t one) {
+    const size_t begin = one * count / parts, end = (one + 1) * count / parts;
+    const auto is_here = [&](uint32_t v) { return v - begin < end - begin; };
+    for (const Triangle& t : part.triangles) {
+      if ((!is_here(t[0]) && !is_here(t[1]) && !is_here(t[2])) || is_dropped(keys_of(t))) continue;
+      for (const uint32_t v : t) uses[v] += is_here(v);
+    }
+  });
 
   // A vertex counts as often as triangles use it, so that it does not matter whether it is split or welded.
-  const size_t coefficients = keys.empty() ? 0 : harmonics.size() / keys.size();
-  for (size_t v = 0; v < keys.size(); ++v) {
-    if (uses[v] == 0) continue;
+  const size_t coefficients = harmonics.size() / count;
+  addInBlocks(count, [&](size_t v, Sums& sums) {
+    if (uses[v] == 0) return;
     const LobeUvs& uv = uvs[v];
     const double d = uv.second.y, weight = uses[v];
     const float o[3] = {uv.first.x, uv.first.y, uv.second.x};
-    for (uint32_t i = 0; i < 3; ++i) addSigned(lobes_, hashDraw(keys[v], i, 0), weight * d * o[i]);
+    for (uint32_t i = 0; i < 3; ++i) addSigned(sums.lobes, hashDraw(keys[v], i, 0), weight * d * o[i]);
     for (size_t i = 0; i < coefficients; ++i)
-      addSigned(harmonics_, hashDraw(keys[v], uint32_t(i), 1), weight * harmonics[v * coefficients + i]);
-  }
+      addSigned(sums.harmonics, hashDraw(keys[v], uint32_t(i), 1), weight * harmonics[v * coefficients + i]);
+  });
 }
 
 AssetSeal SealMaker::finished(const AssetInfo& info) const {
   AssetSeal seal;
-  seal.mesh = hexadecimal(mesh_);
+  seal.mesh = hexadecimal(sums_.mesh);
   seal.constants = hashOfConstants(info);
-  const double size = area_ == 0 ? 1 : std::sqrt(area_);
+  const double size = sums_.area == 0 ? 1 : std::sqrt(sums_.area);
   seal.size = float(size);
-  seal.lobes = inUnits(lobes_, size);
-  if (info.harmonic_order > 0) seal.harmonics = inUnits(harmonics_, size);
-  if (!(area_ > 0)) return seal;
+  seal.lobes = inUnits(sums_.lobes, size);
+  if (info.harmonic_order > 0) seal.harmonics = inUnits(sums_.harmonics, size);
+  if (!(sums_.area > 0)) return seal;
   const auto moment = [&](size_t k, size_t i, size_t j) {
-    return second_[k] / area_ / area_ - first_[i] / area_ / size * (first_[j] / area_ / size);
+    return sums_.second[k] / sums_.area / sums_.area - sums_.first[i] / sums_.area / size * (sums_.first[j] / sums_.area / size);
   };
   const double xx = moment(0, 0, 0), yy = moment(1, 1, 1), zz = moment(2, 2, 2), xy = moment(3, 0, 1), xz = moment(4, 0, 2),
                yz = moment(5, 1, 2);

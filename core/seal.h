@@ -19,13 +19,20 @@ class SealMaker {
   AssetSeal finished(const AssetInfo& info) const;
 
  private:
-  uint64_t mesh_ = 0;
-  double area_ = 0;
-  std::array<double, 3> first_{};   // Σ area · place, relative to the origin below
-  std::array<double, 6> second_{};  // Σ area · place · placeᵀ: xx, yy, zz, xy, xz, yz
+  struct Sums {
+    uint64_t mesh = 0;
+    double area = 0;
+    std::array<double, 3> first{};   // Σ area · place, relative to the origin below
+    std::array<double, 6> second{};  // Σ area · place · placeᵀ: xx, yy, zz, xy, xz, yz
+    std::array<double, kSketchSize> lobes{}, harmonics{};
+    void operator+=(const Sums& other);
+  };
+  template <class Add>
+  void addInBlocks(size_t count, const Add& add);
+
+  Sums sums_;
   std::array<double, 3> origin_{};  // a vertex, so that shapes far from the scene's origin keep their digits
   bool has_origin_ = false;
-  std::array<double, kSketchSize> lobes_{}, harmonics_{};
 };
 
 /// Whether JSON can hold it: the surface's size and the lobes are within float.

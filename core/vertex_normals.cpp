@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace cloudbake {
 
 namespace {
@@ -50,10 +52,14 @@ std::vector<Vec3> areaNormals(std::span<const Vec3> positions, std::span<const T
 
 }  // namespace
 
-std::vector<Vec3> vertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
-  std::vector<Vec3> normals(positions.size());
-  std::vector<float> angles(positions.size());
+namespace {
+
+// Adds the normals of all triangles at the vertices [begin, end), in the order of the triangles.
+void addNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles, size_t begin, size_t end, std::span<Vec3> normals,
+                std::span<float> angles) {
+  const auto is_here = [&](uint32_t vertex) { return vertex - begin < end - begin; };
   for (const Triangle& t : triangles) {
+    if (!is_here(t[0]) && !is_here(t[1]) && !is_here(t[2])) continue;
     const Edge a = edge(positions[t[0]], positions[t[1]]), b = edge(positions[t[1]], positions[t[2]]),
                c = edge(positions[t[2]], positions[t[0]]);
     const Edge area{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -62,6 +68,7 @@ std::vector<Vec3> vertexNormals(std::span<const Vec3> positions, std::span<const
     const double inverse = 1 / twice_area;
     const Vec3 normal{float(area.x * inverse), float(area.y * inverse), float(area.z * inverse)};
     const auto add = [&](uint32_t vertex, double cosine) {  // the cross product of any two edges has this length
+      if (!is_here(vertex)) return;
       const float angle = angleOf(twice_area, cosine);
       normals[vertex] += normal * angle;
       angles[vertex] += angle;
@@ -70,6 +77,19 @@ std::vector<Vec3> vertexNormals(std::span<const Vec3> positions, std::span<const
     add(t[1], -dot(a, b));
     add(t[2], -dot(b, c));
   }
+}
+
+}  // namespace
+
+std::vector<Vec3> vertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  std::vector<Vec3> normals(positions.size());
+  std::vector<float> angles(positions.size());
+  // Every thread reads all triangles, of which most have all corners at one thread's vertices. Few of them are not worth it.
+  constexpr size_t kLeastPerPart = 1 << 14, kMostParts = 8;
+  const size_t parts = std::clamp<size_t>(positions.size() / kLeastPerPart, 1, std::min(threadCount(), kMostParts));
+  parallelFor(parts, [&](size_t part) {
+    addNormals(positions, triangles, part * positions.size() / parts, (part + 1) * positions.size() / parts, normals, angles);
+  });
   std::vector<bool> cancelled(positions.size());
   for (size_t v = 0; v < normals.size(); ++v) cancelled[v] = angles[v] > 0 && !(length(normals[v]) > kCancelled * angles[v]);
   if (std::find(cancelled.begin(), cancelled.end(), true) != cancelled.end()) {
@@ -77,7 +97,9 @@ std::vector<Vec3> vertexNormals(std::span<const Vec3> positions, std::span<const
     for (size_t v = 0; v < normals.size(); ++v)
       if (others[v] != Vec3{}) normals[v] = others[v];
   }
-  for (Vec3& normal : normals) normal = normalized(normal).value_or(Vec3{});
+  parallelBlocks(normals.size(), kLeastPerPart, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) normals[v] = normalized(normals[v]).value_or(Vec3{});
+  });
   return normals;
 }
 

@@ -105,9 +105,11 @@ double estimateCoverageBytes(const Box& box, double voxel_size) {
 }
 
 std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const GridFrame& frame) {
-  std::vector<Vec3> positions;
-  positions.reserve(mesh.positions.size());
-  for (const Vec3& p : mesh.positions) positions.push_back(frame.toIndex(p));
+  constexpr size_t kGrain = 1 << 15;
+  std::vector<Vec3> positions(mesh.positions.size());
+  parallelBlocks(positions.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) positions[v] = frame.toIndex(mesh.positions[v]);
+  });
   const LatticePoints points = latticePoints(positions);
 
   CoverageField field = emptyField(frame, points.low, points.high);

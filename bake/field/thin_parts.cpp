@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -33,14 +36,21 @@ float sampled(const std::array<int, 3>& counts, Vec3 p, float outside, const Val
 
 template <class IsInside>
 Defect findThin(const BakePoints& points, const GridFrame& frame, const std::array<int, 3>& first, const IsInside& is_inside) {
+  constexpr size_t kGrain = 1 << 13;
   Defect thin;
-  for (size_t v = 0; v < points.normals.size(); ++v) {
-    if (points.normals[v] == Vec3{}) continue;
-    const Vec3 at = frame.toIndex(points.positions[v]) - Vec3{float(first[0]), float(first[1]), float(first[2])};
-    bool found = false;
-    for (int depth = 1; depth <= kDeepest && !found; ++depth) found = is_inside(at - points.normals[v] * float(depth));
-    if (!found) thin.meet(uint32_t(v));
-  }
+  std::mutex mutex;
+  parallelBlocks(points.normals.size(), kGrain, [&](size_t begin, size_t end) {
+    Defect found;
+    for (size_t v = begin; v < end; ++v) {
+      if (points.normals[v] == Vec3{}) continue;
+      const Vec3 at = frame.toIndex(points.positions[v]) - Vec3{float(first[0]), float(first[1]), float(first[2])};
+      bool is_thick = false;
+      for (int depth = 1; depth <= kDeepest && !is_thick; ++depth) is_thick = is_inside(at - points.normals[v] * float(depth));
+      if (!is_thick) found.meet(uint32_t(v));
+    }
+    const std::lock_guard lock(mutex);
+    thin.add(found);
+  });
   return thin;
 }
 

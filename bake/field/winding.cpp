@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -15,6 +18,7 @@ namespace {
 
 constexpr int kFractionBits = 16;
 constexpr double kScale = 1 << kFractionBits;
+constexpr size_t kTogether = 1 << 15;  // points or triangles of a task
 
 struct FixedPoint {
   int64_t x, y, z;
@@ -56,7 +60,7 @@ struct ColumnScan {
   };
   size_t x, y, z;  // the coordinates that take these roles
   WindingColumns columns;
-  std::vector<Found> found;
+  std::vector<std::vector<Found>> found;  // per chunk of triangles
 
   ColumnScan(const LatticePoints& points, size_t axis) : x((axis + 1) % 3), y((axis + 2) % 3), z(axis) {
     columns.x0 = points.low[x] - 1;
@@ -65,16 +69,14 @@ struct ColumnScan {
     columns.columns_y = points.high[y] + 2 - columns.y0;
     columns.first.assign(size_t(columns.columns_x) * size_t(columns.columns_y) + 1, 0);
   }
-  void add(int column_x, int column_y, float height, int sign) {
-    const auto column = uint32_t((column_y - columns.y0) * columns.columns_x + (column_x - columns.x0));
-    ++columns.first[column + 1];
-    found.push_back({column, {height, sign}});
+  void add(size_t chunk, int column_x, int column_y, float height, int sign) {
+    found[chunk].push_back({uint32_t((column_y - columns.y0) * columns.columns_x + (column_x - columns.x0)), {height, sign}});
   }
 };
 
 // Finds the crossings of each axis's columns. Most triangles of a fine mesh lie between the columns; one test of their box finds this
 // for all axes.
-void scanAll(const LatticePoints& points, std::span<const Triangle> triangles, std::span<ColumnScan> scans) {
+void scanChunk(const LatticePoints& points, std::span<const Triangle> triangles, size_t chunk, std::span<ColumnScan> scans) {
   for (const Triangle& t : triangles) {
     const auto &a = points.fixed[t[0]], &b = points.fixed[t[1]], &c = points.fixed[t[2]];
     std::array<int, 3> low, high;
@@ -86,18 +88,30 @@ void scanAll(const LatticePoints& points, std::span<const Triangle> triangles, s
       const size_t x = scan.x, y = scan.y, z = scan.z;
       if (low[x] > high[x] || low[y] > high[y]) continue;
       scanTriangle({a[x], a[y], a[z]}, {b[x], b[y], b[z]}, {c[x], c[y], c[z]}, low[x], high[x], low[y], high[y],
-                   [&](int column_x, int column_y, float height, int sign) { scan.add(column_x, column_y, height, sign); });
+                   [&](int column_x, int column_y, float height, int sign) { scan.add(chunk, column_x, column_y, height, sign); });
     }
   }
+}
+
+void scanAll(const LatticePoints& points, std::span<const Triangle> triangles, std::span<ColumnScan> scans) {
+  const size_t chunks = (triangles.size() + kTogether - 1) / kTogether;
+  for (ColumnScan& scan : scans) scan.found.resize(chunks);
+  parallelFor(chunks, [&](size_t chunk) {
+    const size_t first = chunk * kTogether;
+    scanChunk(points, triangles.subspan(first, std::min(kTogether, triangles.size() - first)), chunk, scans);
+  });
 }
 
 // Sorts the crossings by column and height.
 WindingColumns sortedColumns(ColumnScan& scan) {
   WindingColumns columns = std::move(scan.columns);
+  for (const auto& of_chunk : scan.found)
+    for (const ColumnScan::Found& found : of_chunk) ++columns.first[found.column + 1];
   for (size_t i = 1; i < columns.first.size(); ++i) columns.first[i] += columns.first[i - 1];
-  columns.crossings.resize(scan.found.size());
+  columns.crossings.resize(columns.first.back());
   std::vector<uint32_t> next(columns.first.begin(), columns.first.end() - 1);
-  for (const auto& [column, crossing] : scan.found) columns.crossings[next[column]++] = crossing;
+  for (const auto& of_chunk : scan.found)
+    for (const auto& [column, crossing] : of_chunk) columns.crossings[next[column]++] = crossing;
   const auto is_below = [](const auto& a, const auto& b) { return a.z != b.z ? a.z < b.z : a.sign > b.sign; };
   for (size_t i = 0; i + 1 < columns.first.size(); ++i)
     if (columns.first[i + 1] - columns.first[i] > 1)
@@ -109,13 +123,20 @@ WindingColumns sortedColumns(ColumnScan& scan) {
 
 LatticePoints latticePoints(std::span<const Vec3> positions_index) {
   LatticePoints points;
-  points.fixed.reserve(positions_index.size());
+  points.fixed.resize(positions_index.size());
   Box box;
+  std::mutex mutex;
   const auto rounded = [](float x) { return int32_t(double(x) * kScale + (x < 0 ? -0.5 : 0.5)); };
-  for (const Vec3& p : positions_index) {
-    box.add(p);
-    points.fixed.push_back({rounded(p.x), rounded(p.y), rounded(p.z)});
-  }
+  parallelBlocks(positions_index.size(), kTogether, [&](size_t begin, size_t end) {
+    Box own;
+    for (size_t v = begin; v < end; ++v) {
+      const Vec3& p = positions_index[v];
+      own.add(p);
+      points.fixed[v] = {rounded(p.x), rounded(p.y), rounded(p.z)};
+    }
+    const std::lock_guard lock(mutex);
+    box.add(own.low), box.add(own.high);
+  });
   if (box.empty()) return points;
   points.low = {int(std::floor(box.low.x)), int(std::floor(box.low.y)), int(std::floor(box.low.z))};
   points.high = {int(std::ceil(box.high.x)), int(std::ceil(box.high.y)), int(std::ceil(box.high.z))};
@@ -131,7 +152,9 @@ WindingColumns windingColumns(const LatticePoints& points, std::span<const Trian
 std::array<WindingColumns, 3> windingColumnsOfAxes(const LatticePoints& points, std::span<const Triangle> triangles) {
   std::array<ColumnScan, 3> scans{ColumnScan(points, 0), ColumnScan(points, 1), ColumnScan(points, 2)};
   scanAll(points, triangles, scans);
-  return {sortedColumns(scans[0]), sortedColumns(scans[1]), sortedColumns(scans[2])};
+  std::array<WindingColumns, 3> columns;
+  parallelFor(columns.size(), [&](size_t axis) { columns[axis] = sortedColumns(scans[axis]); });
+  return columns;
 }
 
 int windingNumber(const WindingColumns& columns, int x, int y, float z) {

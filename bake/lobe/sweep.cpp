@@ -272,32 +272,61 @@ std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
   return directions;
 }
 
-std::vector<Lobe> bakeSweep(const BakePoints& points, const SweepField& field, const BakeSettings& settings, Warnings& warnings) {
-  std::vector<Vec3> axes = sweepAxes(settings.rays);
-  for (Vec3& axis : axes) axis = turnedToMainAxis(axis);
-  uint64_t moved = 0;
-  const SweepPlan plan =
-      makePlan(cellPositions(points.positions, field.coverage, moved), axes, field.coverage, settings.ray_length.value(), field.sliced);
-  const std::vector<SummedDirection> sums = summedDirections(plan);
+namespace {
 
+// What a bake counts, by several threads.
+struct BakeCounts {
+  std::atomic<uint64_t> moved = 0, undefined = 0;
+};
+
+void bakePoints(const BakePoints& points, std::span<const Vec3> axes, const SweepField& field, double ray_length, std::span<Lobe> lobes,
+                BakeCounts& counts) {
+  uint64_t moved = 0;
+  const SweepPlan plan = makePlan(cellPositions(points.positions, field.coverage, moved), axes, field.coverage, ray_length, field.sliced);
+  counts.moved.fetch_add(moved, std::memory_order_relaxed);
+  const std::vector<SummedDirection> sums = summedDirections(plan);
   std::vector<Vec3> directions(sums.size());
-  std::atomic<uint64_t> undefined = 0;
   forPoints(sums.size(), [&](size_t v) {
     const auto& [x, y, z, squares] = sums[v];
     const double norm = std::sqrt(x * x + y * y + z * z);
     // Errors of δ in N lengths alone give ‖Σ ω ℓ²‖ ≈ δ √(Σ ℓ²).
     const bool is_defined = norm > 0 && norm >= std::max(kConcentrationNoise * squares, kLengthNoise_cells * std::sqrt(squares));
     directions[v] = is_defined ? Vec3{float(x / norm), float(y / norm), float(z / norm)} : undefinedDirection(points, v);
-    if (!is_defined) undefined.fetch_add(1, std::memory_order_relaxed);
+    if (!is_defined) counts.undefined.fetch_add(1, std::memory_order_relaxed);
   });
   const std::vector<float> densities = slicedLengths(plan.cell_positions, directions, plan.length_cells, field.sliced);
-  std::vector<Lobe> lobes(sums.size());
   // The sharpened field overshoots, so a grazing length may be negative by up to a voxel.
   forPoints(lobes.size(), [&](size_t v) {
     lobes[v] = {directions[v], float(std::max(0.0, double(densities[v]) * field.coverage.frame.voxel_size))};
   });
-  warnings.add(WarningKind::kOutsideField, "a vertex outside the integration field was baked at its border", moved);
-  warnUndefined(undefined, warnings);
+}
+
+}  // namespace
+
+// Many points are baked in blocks, whose arrays stay in the cache and do not fill the memory. Every block sweeps all cells, so it has more
+// points where there are many cells.
+std::vector<Lobe> bakeSweep(const BakePoints& points, const SweepField& field, const BakeSettings& settings, Warnings& warnings) {
+  constexpr size_t kLeastPoints = 1 << 17, kCellsPerPoint = 8;
+  std::vector<Vec3> axes = sweepAxes(settings.rays);
+  for (Vec3& axis : axes) axis = turnedToMainAxis(axis);
+  const size_t count = points.positions.size(),
+               blocks = std::max<size_t>(count / std::max(kLeastPoints, field.coverage.fractions.size() / kCellsPerPoint), 1);
+  std::vector<Lobe> lobes(count);
+  BakeCounts counts;
+  const auto bakeBlock = [&](size_t block) {
+    const size_t begin = block * count / blocks, size = (block + 1) * count / blocks - begin;
+    const auto normals = points.normals.empty() ? points.normals : points.normals.subspan(begin, size);
+    bakePoints({points.positions.subspan(begin, size), normals}, axes, field, settings.ray_length.value(),
+               std::span(lobes).subspan(begin, size), counts);
+  };
+  if (blocks == 1) {
+    bakeBlock(0);
+  } else {
+    const LoopProgress::Counted counted;
+    parallelFor(blocks, bakeBlock);
+  }
+  warnings.add(WarningKind::kOutsideField, "a vertex outside the integration field was baked at its border", counts.moved);
+  warnUndefined(counts.undefined, warnings);
   return lobes;
 }
 

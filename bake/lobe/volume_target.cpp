@@ -191,16 +191,23 @@ VolumeTarget interpolatedTarget(const BakePoints& points, std::span<const Vec3> 
 
 }  // namespace
 
+VolumeTargets::VolumeTargets(size_t points, std::span<const Vec3> axes, const SweepField& field, VolumeTargetSettings settings)
+    : axes_(axes), field_(field), settings_(std::move(settings)), view_axes_(sweepAxes(settings_.views)) {
+  if (!settings_.may_interpolate) return;
+  const size_t samples = points * size_t(settings_.views / 2) * size_t(settings_.depths);  // half of the views are in front
+  if (auto lattice = lengthLattice(field, view_axes_, axes, settings_, samples))
+    lattice_ = std::make_unique<const LengthLattice>(std::move(*lattice));
+}
+VolumeTargets::~VolumeTargets() = default;
+
+VolumeTarget VolumeTargets::at(const BakePoints& points) const {
+  return lattice_ ? interpolatedTarget(points, axes_, view_axes_, field_, *lattice_, settings_)
+                  : exactTarget(points, axes_, field_, settings_);
+}
+
 VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const SweepField& field,
                           const VolumeTargetSettings& settings) {
-  if (settings.may_interpolate) {
-    const std::vector<Vec3> view_axes = sweepAxes(settings.views);
-    const size_t samples =
-        points.positions.size() * size_t(settings.views / 2) * size_t(settings.depths);  // half of the views are in front
-    if (const auto lattice = lengthLattice(field, view_axes, axes, settings, samples))
-      return interpolatedTarget(points, axes, view_axes, field, *lattice, settings);
-  }
-  return exactTarget(points, axes, field, settings);
+  return VolumeTargets(points.positions.size(), axes, field, settings).at(points);
 }
 
 std::vector<float> scatteredLight(std::span<const float> lengths, float extinction, const OctaveSettings& octaves) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,22 @@ struct VolumeTarget {
 /// S(σ ℓ(x, l)). Points without a normal are seen equally from all sides. The result is the same for any number of threads and any CPU.
 VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const SweepField& field,
                           const VolumeTargetSettings& settings);
+
+struct LengthLattice;
+/// The same for many points in blocks: the lattice, if one is worth it for so many points, is made once. It refers to axes and field.
+class VolumeTargets {
+ public:
+  VolumeTargets(size_t points, std::span<const Vec3> axes, const SweepField& field, VolumeTargetSettings settings);
+  ~VolumeTargets();
+  VolumeTarget at(const BakePoints& points) const;
+
+ private:
+  std::span<const Vec3> axes_;
+  const SweepField& field_;
+  VolumeTargetSettings settings_;
+  std::vector<Vec3> view_axes_;
+  std::unique_ptr<const LengthLattice> lattice_;
+};
 
 /// S(σℓ) of lengths in world units: the light that arrives after all scatterings.
 std::vector<float> scatteredLight(std::span<const float> lengths, float extinction, const OctaveSettings& octaves);

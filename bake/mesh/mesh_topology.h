@@ -49,6 +49,10 @@ struct Defect {
   void meet(uint32_t where) {
     if (count++ == 0 || where < first) first = where;
   }
+  void add(const Defect& other) {
+    if (other.count > 0 && (count == 0 || other.first < first)) first = other.first;
+    count += other.count;
+  }
 };
 
 /// Angle-weighted normals of the surface welded by position, per vertex of the mesh. They agree on both sides of a seam or hard edge.

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <span>
+#include <type_traits>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/gltf/tinygltf.h"
 
 namespace cloudbake {
@@ -55,22 +59,40 @@ Elements locate(const GltfAccessors& accessors, int view_index, size_t offset, s
   return {buffer.data() + view.byteOffset + offset, stride};
 }
 
+// A component as a double, which is exact for every type.
 template <typename T>
-T load(const unsigned char* data) {
+double component(const unsigned char* data, bool normalized) {
   T value;
   std::memcpy(&value, data, sizeof value);
-  return value;
+  if (sizeof value == 4 || !normalized) return double(value);
+  return std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0);
 }
 
-double component(const unsigned char* data, int type, bool normalized) {
+// Calls use(T()) for the T of a component type.
+template <class Use>
+void withComponentType(int type, const Use& use) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return normalized ? std::max(load<int8_t>(data) / 127.0, -1.0) : load<int8_t>(data);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<uint8_t>(data) / (normalized ? 255.0 : 1);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return normalized ? std::max(load<int16_t>(data) / 32767.0, -1.0) : load<int16_t>(data);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<uint16_t>(data) / (normalized ? 65535.0 : 1);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load<uint32_t>(data);
-    default: return load<float>(data);
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return use(int8_t());
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return use(uint8_t());
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return use(int16_t());
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return use(uint16_t());
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return use(uint32_t());
+    default: return use(float());
   }
+}
+
+// Writes elements of `width` components.
+template <typename Value>
+void copyElements(const Elements& from, const tinygltf::Accessor& accessor, size_t width, size_t begin, size_t end, Value* values) {
+  withComponentType(accessor.componentType, [&]<typename T>(T) {
+    const unsigned char* element = from.data + begin * from.stride;
+    if (std::is_same_v<T, Value> && from.stride == width * sizeof(T)) {
+      std::memcpy(values, element, (end - begin) * from.stride);
+      return;
+    }
+    for (size_t i = begin; i < end; ++i, element += from.stride)
+      for (size_t c = 0; c < width; ++c) *values++ = Value(component<T>(element + c * sizeof(T), accessor.normalized));
+  });
 }
 
 // Returns the accessor after checking its number of components, type and count.
@@ -86,47 +108,67 @@ const tinygltf::Accessor& checkedAccessor(const GltfAccessors& accessors, int in
   return accessor;
 }
 
-// The values in storage order as doubles, which are exact for every component type.
-std::vector<double> readComponents(const GltfAccessors& accessors, int index, int components, const std::string& owner) {
-  const tinygltf::Accessor& accessor = checkedAccessor(accessors, index, components, owner);
-  const size_t size = componentBytes(accessors, accessor.componentType, owner), width = size_t(components), count = accessor.count;
-  Elements elements;
-  if (accessor.bufferView >= 0) elements = locate(accessors, accessor.bufferView, accessor.byteOffset, count, size * width, owner);
-  std::vector<double> values(count * width);
-  for (size_t i = 0; elements.data && i < count; ++i)
-    for (size_t c = 0; c < width; ++c)
-      values[i * width + c] = component(elements.data + i * elements.stride + c * size, accessor.componentType, accessor.normalized);
-  if (!accessor.sparse.isSparse) return values;
-
+// Replaces the elements that a sparse accessor names.
+template <typename Value>
+void replaceElements(const GltfAccessors& accessors, const tinygltf::Accessor& accessor, size_t width, const std::string& owner,
+                     Value* values) {
   const auto& sparse = accessor.sparse;
+  const size_t size = componentBytes(accessors, accessor.componentType, owner), count = accessor.count;
   if (sparse.count < 0 || size_t(sparse.count) > count || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
     fail(accessors, owner, "a sparse accessor replaces more elements than exist");
   const size_t index_size = componentBytes(accessors, sparse.indices.componentType, owner), changes = size_t(sparse.count);
   const Elements where = locate(accessors, sparse.indices.bufferView, size_t(sparse.indices.byteOffset), changes, index_size, owner);
   const Elements what = locate(accessors, sparse.values.bufferView, size_t(sparse.values.byteOffset), changes, size * width, owner);
   for (size_t i = 0; i < changes; ++i) {
-    const double at = component(where.data + i * where.stride, sparse.indices.componentType, false);
+    double at = 0;
+    withComponentType(sparse.indices.componentType, [&]<typename T>(T) { at = component<T>(where.data + i * where.stride, false); });
     if (!(at >= 0) || at >= double(count)) fail(accessors, owner, "a sparse accessor replaces an element out of range");
-    for (size_t c = 0; c < width; ++c)
-      values[size_t(at) * width + c] = component(what.data + i * what.stride + c * size, accessor.componentType, accessor.normalized);
+    copyElements(what, accessor, width, i, i + 1, values + size_t(at) * width);
   }
-  return values;
+}
+
+// All components in storage order, as values or as targets that consist of several. Values beyond the last whole target are lost.
+template <typename Value, typename Target = Value>
+std::vector<Target> readComponents(const GltfAccessors& accessors, int index, int components, const std::string& owner) {
+  constexpr size_t kElementsPerTask = 1 << 15;
+  const tinygltf::Accessor& accessor = checkedAccessor(accessors, index, components, owner);
+  const size_t size = componentBytes(accessors, accessor.componentType, owner), width = size_t(components), count = accessor.count;
+  Elements elements;
+  if (accessor.bufferView >= 0) elements = locate(accessors, accessor.bufferView, accessor.byteOffset, count, size * width, owner);
+  std::vector<Target> targets(count * width * sizeof(Value) / sizeof(Target));
+  Value* const values = reinterpret_cast<Value*>(targets.data());
+  if (elements.data)
+    parallelBlocks(count, kElementsPerTask,
+                   [&](size_t begin, size_t end) { copyElements(elements, accessor, width, begin, end, values + begin * width); });
+  if (accessor.sparse.isSparse) replaceElements(accessors, accessor, width, owner, values);
+  return targets;
+}
+
+void checkIndices(const GltfAccessors& accessors, int index, int components, const std::string& owner) {
+  const tinygltf::Accessor& checked = checkedAccessor(accessors, index, components, owner);
+  if (checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+      checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+    fail(accessors, owner, "its indices are not unsigned integers");
 }
 
 }  // namespace
 
 std::vector<float> GltfAccessors::readFloats(int accessor, int components, const std::string& owner) const {
-  const std::vector<double> values = readComponents(*this, accessor, components, owner);
-  return {values.begin(), values.end()};
+  return readComponents<float>(*this, accessor, components, owner);
+}
+
+std::vector<Vec3> GltfAccessors::readVectors(int accessor, const std::string& owner) const {
+  return readComponents<float, Vec3>(*this, accessor, 3, owner);
 }
 
 std::vector<uint32_t> GltfAccessors::readIndices(int accessor, const std::string& owner, int components) const {
-  const tinygltf::Accessor& checked = checkedAccessor(*this, accessor, components, owner);
-  if (checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-      checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
-    fail(*this, owner, "its indices are not unsigned integers");
-  const std::vector<double> values = readComponents(*this, accessor, components, owner);
-  return {values.begin(), values.end()};
+  checkIndices(*this, accessor, components, owner);
+  return readComponents<uint32_t>(*this, accessor, components, owner);
+}
+
+std::vector<Triangle> GltfAccessors::readTriangles(int accessor, const std::string& owner) const {
+  checkIndices(*this, accessor, 1, owner);
+  return readComponents<uint32_t, Triangle>(*this, accessor, 1, owner);
 }
 
 }  // namespace cloudbake

@@ -81,10 +81,12 @@ GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes) {
   return chunks;
 }
 
-std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary) {
+std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::span<const std::string_view> pieces) {
   const auto padding = [](size_t size) { return (4 - size % 4) % 4; };
-  const size_t json_size = json.size() + padding(json.size()), binary_size = binary.size() + padding(binary.size());
-  const size_t length = 20 + json_size + (binary.empty() ? 0 : 8 + binary_size);
+  size_t binary = 0;
+  for (const std::string_view piece : pieces) binary += piece.size();
+  const size_t json_size = json.size() + padding(json.size()), binary_size = binary + padding(binary);
+  const size_t length = 20 + json_size + (binary == 0 ? 0 : 8 + binary_size);
   if (length > UINT32_MAX)
     throw InputError(file.string(),
                      "the asset would take " + std::to_string(length) + " bytes, but a GLB holds at most 4 GiB; use fewer vertices");
@@ -93,9 +95,10 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
   appendWord(glb, kGlbMagic), appendWord(glb, 2), appendWord(glb, length);
   appendWord(glb, json_size), appendWord(glb, kGlbJsonChunk);
   glb.append(json).append(padding(json.size()), ' ');
-  if (binary.empty()) return glb;
+  if (binary == 0) return glb;
   appendWord(glb, binary_size), appendWord(glb, kGlbBinaryChunk);
-  glb.append(binary).append(padding(binary.size()), '\0');
+  for (const std::string_view piece : pieces) glb.append(piece);
+  glb.append(padding(binary), '\0');
   return glb;
 }
 

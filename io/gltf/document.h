@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -72,8 +73,11 @@ struct GlbChunks {
 };
 /// Throws InputError if the container is damaged.
 GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes);
-/// A GLB of the two chunks, padded as the specification requires. Throws InputError beyond 4 GiB.
-std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary);
+/// A GLB of the two chunks, the binary one in pieces, padded as the specification requires. Throws InputError beyond 4 GiB.
+std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::span<const std::string_view> binary);
+inline std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary) {
+  return joinGlb(file, json, std::span(&binary, 1));
+}
 
 /// The name of the material that a bake gives to parts without a material.
 inline constexpr const char* kOwnMaterialName = "cloud";

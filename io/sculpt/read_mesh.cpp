@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/first_where.h"
+#include "core/parallel.h"
 #include "core/text/scan.h"
 #include "core/text/utf8.h"
 #include "core/vertex_normals.h"
@@ -133,8 +135,14 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
 
 // Normalises all normals. A missing (zero) normal is replaced by the normal of the surface.
 void completeNormals(const fs::path& file, SculptPart& part, Warnings& warnings) {
+  constexpr size_t kGrain = 1 << 14;
+  const auto needs_help = [&](size_t i) { return !isFinite(part.normals[i]) || !normalized(part.normals[i]); };
+  const size_t sound = firstWhere(part.normals.size(), needs_help);
+  parallelBlocks(sound, kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) part.normals[i] = *normalized(part.normals[i]);
+  });
   std::vector<Vec3> computed;
-  for (size_t i = 0; i < part.normals.size(); ++i) {
+  for (size_t i = sound; i < part.normals.size(); ++i) {
     Vec3& normal = part.normals[i];
     if (!isFinite(normal)) failAt(file, part, "the normal of vertex " + std::to_string(i) + " is not finite; repair the file");
     if (const auto unit = normalized(normal)) {
@@ -167,15 +175,19 @@ void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
   const size_t count = part.positions.size();
   if ((!part.normals.empty() && part.normals.size() != count) || (!part.uvs.empty() && part.uvs.size() != count))
     failAt(file, part, "the numbers of positions, normals and UVs differ; export the file again");
-  for (size_t i = 0; i < count; ++i) {
+  const auto is_far = [&](size_t i) { return !isFinite(transformPoint(part.toScene(i), part.positions[i])); };
+  if (const size_t i = firstWhere(count, [&](size_t v) { return !isFinite(part.positions[v]) || is_far(v); }); i < count) {
     if (!isFinite(part.positions[i])) failAt(file, part, "the position of vertex " + std::to_string(i) + " is not finite; repair the file");
-    if (!isFinite(transformPoint(part.toScene(i), part.positions[i])))
-      failAt(file, part, "vertex " + std::to_string(i) + " lies beyond the range of float32 in the scene; scale the sculpt down");
+    failAt(file, part, "vertex " + std::to_string(i) + " lies beyond the range of float32 in the scene; scale the sculpt down");
   }
   for (size_t i = 0; i < part.uvs.size(); ++i)
     if (!std::isfinite(part.uvs[i].x) || !std::isfinite(part.uvs[i].y))
       failAt(file, part, "the UV of vertex " + std::to_string(i) + " is not finite; repair the file");
-  for (size_t i = 0; i < part.triangles.size(); ++i)
+  const auto is_wrong = [&](size_t i) {
+    const auto& [a, b, c] = part.triangles[i];
+    return a >= count || b >= count || c >= count;
+  };
+  if (const size_t i = firstWhere(part.triangles.size(), is_wrong); i < part.triangles.size())
     for (const uint32_t index : part.triangles[i])
       if (index >= count)
         failAt(file, part,

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bake/lobe/directions.h"
+#include "bake/lobe/sparse_points.h"
 #include "bake/mesh/mesh_topology.h"
 #include "io/report/report.h"
 #include "pipeline/lobes/lobes.h"
@@ -92,6 +93,16 @@ SurfaceMesh pickedPoints(const SurfaceMesh& surface, std::span<const size_t> ver
   return {pick(surface.positions, vertices), pick(surface.normals, vertices), {}};
 }
 
+// The lobes of some vertices as a bake of all gives them: those of many are blended between those of a few.
+ShapedLobes lobesLike(const SurfaceMesh& surface, const SurfaceMesh& some, std::span<const size_t> chosen, const IntegrationField& field,
+                      const NewBakeSettings& settings, Warnings& warnings) {
+  if (!settings.lobe.fit || !settings.lobe.fit_to_volume || !SparsePoints::mayChoose(surface.positions.size()))
+    return lobesAt(some, field, settings.lobe, settings.parameters, warnings);
+  ShapedLobes lobes = lobesAt(surface, field, settings.lobe, settings.parameters, warnings);
+  lobes.lobes = pick(lobes.lobes, chosen);
+  return lobes;
+}
+
 // Appends the bake of a cloud whose vertices follow `first` others.
 void bakeOne(const Cloud& cloud, const NewBakeSettings& settings, size_t first, size_t most, Warnings& warnings, NewBake& baked) {
   const IntegrationField field = buildField(cloud, settings.field, settings.parameters.bake.method, warnings);
@@ -105,7 +116,7 @@ void bakeOne(const Cloud& cloud, const NewBakeSettings& settings, size_t first, 
     const BakedLobes lobes = bakeLobes(cloud, field, settings.lobe, settings.parameters, warnings, watch, seconds);
     baked.lobes.insert(baked.lobes.end(), lobes.lobes.begin(), lobes.lobes.end());
   } else {
-    const ShapedLobes lobes = lobesAt(points, field, settings.lobe, settings.parameters, warnings);
+    const ShapedLobes lobes = lobesLike(cloud.surface, points, own, field, settings, warnings);
     baked.lobes.insert(baked.lobes.end(), lobes.lobes.begin(), lobes.lobes.end());
   }
   for (const size_t v : own) baked.vertices.push_back(first + v);

@@ -7,6 +7,7 @@
 
 #include "bake/lobe/fit_lobe.h"
 #include "bake/lobe/harmonics.h"
+#include "bake/lobe/sparse_points.h"
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
@@ -59,56 +60,97 @@ struct FitTargets {
   uint64_t unseen = 0;                   // points
 };
 
-FitTargets fitTargets(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field, const LobeSettings& settings,
-                      const BakeParameters& parameters, bool is_judge = false) {
-  if (!settings.fit_to_volume) return {estimatedLengths(points.positions, axes, field, parameters.bake), {}};
-  VolumeTargetSettings sampled =
-      volumeSettings(settings, parameters, extinctionSteps(parameters.extinction_low, parameters.extinction_high));
-  sampled.views = is_judge ? kVolumeSampling.judging_views : kVolumeSampling.views;
-  sampled.depths = is_judge ? kVolumeSampling.judging_depths : kVolumeSampling.depths;
-  sampled.may_interpolate = !is_judge;
-  VolumeTarget volume = volumeTarget(points, axes, field.swept(), sampled);
-  return {{}, std::move(volume.radiance), volume.unseen};
+// The targets of many points, which may be asked for in blocks.
+class TargetMaker {
+ public:
+  TargetMaker(size_t points, std::span<const Vec3> axes, const IntegrationField& field, const LobeSettings& settings,
+              const BakeParameters& parameters, bool is_judge = false)
+      : axes_(axes), field_(field), bake_(parameters.bake) {
+    if (!settings.fit_to_volume) return;
+    VolumeTargetSettings sampled =
+        volumeSettings(settings, parameters, extinctionSteps(parameters.extinction_low, parameters.extinction_high));
+    sampled.views = is_judge ? kVolumeSampling.judging_views : kVolumeSampling.views;
+    sampled.depths = is_judge ? kVolumeSampling.judging_depths : kVolumeSampling.depths;
+    sampled.may_interpolate = !is_judge;
+    volume_.emplace(points, axes, field.swept(), sampled);
+  }
+  FitTargets at(const BakePoints& points) const {
+    if (!volume_) return {estimatedLengths(points.positions, axes_, field_, bake_), {}};
+    VolumeTarget volume = volume_->at(points);
+    return {{}, std::move(volume.radiance), volume.unseen};
+  }
+
+ private:
+  std::span<const Vec3> axes_;
+  const IntegrationField& field_;
+  const BakeSettings& bake_;
+  std::optional<VolumeTargets> volume_;
+};
+
+// What all vertices of a fit share.
+struct FitPlan {
+  const IntegrationField& field;
+  const LobeSettings& settings;
+  const BakeParameters& parameters;
+  LightSet lights;
+  std::vector<Vec3> directions;
+  FitSettings fit;
+};
+
+// Fits lobes at points, in blocks, so that the targets of many do not fill the memory. Counts the points that no view sees.
+std::vector<Lobe> fittedAt(const BakePoints& points, std::span<const Lobe> starts, const FitPlan& plan, uint64_t& unseen) {
+  const TargetMaker maker(starts.size(), plan.lights.axes, plan.field, plan.settings, plan.parameters);
+  std::vector<Lobe> fitted;
+  fitted.reserve(starts.size());
+  for (size_t begin = 0; begin < starts.size(); begin += kBlock) {
+    const size_t count = std::min(kBlock, starts.size() - begin);
+    const auto block = [&](const auto& values) { return values.empty() ? std::span(values) : std::span(values).subspan(begin, count); };
+    const LoopProgress::Part part(double(begin) / double(starts.size()), double(begin + count) / double(starts.size()));
+    const auto targetsOfBlock = [&] {
+      const LoopProgress::Part most_of_it(0, kShareOfTargets);
+      return maker.at({block(points.positions), block(points.normals)});
+    };
+    const FitTargets targets = targetsOfBlock();
+    const LoopProgress::Part rest(kShareOfTargets, 1);
+    const std::vector<Lobe> lobes =
+        fitLobes(block(starts), {plan.directions, targets.lengths, plan.lights.weights, targets.radiance}, plan.fit);
+    fitted.insert(fitted.end(), lobes.begin(), lobes.end());
+    unseen += targets.unseen;
+  }
+  return fitted;
 }
 
 // Fits lobes, starting from the mean lobes.
 ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& field, const std::vector<Lobe>& mean,
                         const LobeSettings& settings, const BakeParameters& parameters, Warnings& warnings) {
-  const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, samplingOf(settings).directions);
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
-  const auto targetsAt = [&](const BakePoints& points) { return fitTargets(points, lights.axes, field, settings, parameters); };
-  FitSettings fit;
-  fit.shape = parameters.shape;
-  fit.extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
+  FitPlan plan{field, settings, parameters, fitLights(settings.sun_arc, settings.fit_to_volume, samplingOf(settings).directions), {}, {}};
+  plan.directions = bothSenses(plan.lights.axes);
+  plan.fit.shape = parameters.shape;
+  plan.fit.extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
+  const BakePoints points{surface.positions, surface.normals};
 
   if (settings.fit_exponent || settings.fit_bias) {
     const FitSampling& sampling = samplingOf(settings);
-    if (settings.fit_exponent) fit.shape.exponent = sampling.exponent;
-    if (settings.fit_bias) fit.shape.bias = sampling.bias_depths / parameters.extinction;
-    const std::vector<size_t> chosen = evenlySpread(mean.size(), sampling.shape_vertices);
-    const std::vector<Vec3> positions = pick(surface.positions, chosen), normals = pick(surface.normals, chosen);
+    if (settings.fit_exponent) plan.fit.shape.exponent = sampling.exponent;
+    if (settings.fit_bias) plan.fit.shape.bias = sampling.bias_depths / parameters.extinction;
+    const std::vector<size_t> some = evenlySpread(mean.size(), sampling.shape_vertices);
+    const std::vector<Vec3> positions = pick(surface.positions, some), normals = pick(surface.normals, some);
     const LoopProgress::Part search(0, 0.01);
-    const FitTargets targets = targetsAt({positions, normals});
-    fit.shape = fitShape(pick(mean, chosen), {directions, targets.lengths, lights.weights, targets.radiance}, fit,
-                         {settings.fit_exponent, settings.fit_bias, sampling.first_step, chosen.size()});
+    const FitTargets targets = TargetMaker(some.size(), plan.lights.axes, field, settings, parameters).at({positions, normals});
+    plan.fit.shape = fitShape(pick(mean, some), {plan.directions, targets.lengths, plan.lights.weights, targets.radiance}, plan.fit,
+                              {settings.fit_exponent, settings.fit_bias, sampling.first_step, some.size()});
   }
 
-  // The vertices are fitted in blocks, so that the targets of a large mesh do not fill the memory.
-  ShapedLobes fitted{{}, fit.shape};
   uint64_t unseen = 0;
-  for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
-    const size_t count = std::min(kBlock, mean.size() - begin);
-    const auto block = [&](const auto& values) { return values.empty() ? std::span(values) : std::span(values).subspan(begin, count); };
-    const LoopProgress::Part part(double(begin) / double(mean.size()), double(begin + count) / double(mean.size()));
-    const auto targetsOfBlock = [&] {
-      const LoopProgress::Part most_of_it(0, kShareOfTargets);
-      return targetsAt({block(surface.positions), block(surface.normals)});
-    };
-    const FitTargets targets = targetsOfBlock();
-    const LoopProgress::Part rest(kShareOfTargets, 1);
-    const std::vector<Lobe> lobes = fitLobes(block(mean), {directions, targets.lengths, lights.weights, targets.radiance}, fit);
-    fitted.lobes.insert(fitted.lobes.end(), lobes.begin(), lobes.end());
-    unseen += targets.unseen;
+  ShapedLobes fitted{{}, plan.fit.shape};
+  const auto sparse = settings.fit_to_volume ? SparsePoints::choose(points, *field.coverage) : std::nullopt;
+  if (sparse) {
+    const std::vector<size_t>& chosen = sparse->chosen();
+    const std::vector<Vec3> positions = pick(surface.positions, chosen), normals = pick(surface.normals, chosen);
+    fitted.lobes = sparse->blended(fittedAt({positions, normals}, pick(mean, chosen), plan, unseen));
+    unseen = uint64_t(double(unseen) * double(mean.size()) / double(chosen.size()));  // about so many of all
+  } else {
+    fitted.lobes = fittedAt(points, mean, plan, unseen);
   }
   // Vertices in creases and of inner shells are in no picture. If most are like that, something is wrong with the mesh.
   constexpr double kUnseenShare = 0.5;
@@ -125,7 +167,7 @@ std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& fiel
   const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, samplingOf(settings).judging_directions);
   const std::vector<Vec3> directions = bothSenses(lights.axes), positions = pick(cloud.surface.positions, judged),
                           normals = pick(cloud.surface.normals, judged);
-  const FitTargets targets = fitTargets({positions, normals}, lights.axes, field, settings, parameters, true);
+  const FitTargets targets = TargetMaker(judged.size(), lights.axes, field, settings, parameters, true).at({positions, normals});
   const std::vector<float> extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
   std::vector<FitError> errors;
   for (size_t i = 0; i < extinctions.size(); ++i) {

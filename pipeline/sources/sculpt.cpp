@@ -159,9 +159,12 @@ std::string placeInSculpt(const Sculpt& sculpt, uint32_t index, bool is_vertex) 
 Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   const auto read = [&] {
     requireMemoryForFile(settings.source.input, settings.source.memory_limit);
-    const std::string bytes = settings.source.read.read_file(settings.source.input);
-    Sculpt sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
-    report.info.input_hash = sourceHash(sculpt, bytes);
+    Sculpt sculpt;
+    {
+      const std::string bytes = settings.source.read.read_file(settings.source.input);  // is freed before the check takes its memory
+      sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
+      report.info.input_hash = sourceHash(sculpt, bytes);
+    }
     return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch);
   };
   return namingFile(report.input, [&] { return inStage("reading this sculpt", "use one with fewer vertices", read); });

@@ -5,13 +5,16 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
+#include "core/first_where.h"
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
+#include "core/parallel.h"
 #include "core/seal.h"
 #include "core/text/base64.h"
 #include "core/text/maker.h"
@@ -30,10 +33,13 @@ namespace {
 
 constexpr int kMaxUvSets = 8;
 
-// The document being written and its single buffer.
+// The document being written and its single buffer, in pieces: those of a sculpt's own buffers are not copied until all are joined.
 struct Output {
   Json json;
-  std::string binary;
+  std::vector<std::string_view> pieces{};
+  std::deque<std::string> owned{};                  // bytes of pieces that nothing else keeps
+  std::deque<SculptPart> moved{};                   // parts of which pieces are
+  size_t size = 0;                                  // of all pieces
   std::map<std::string, int> known_accessors{};     // hash of bytes and type → accessor: primitives that share vertices share lobes
   std::set<size_t> free_accessors{}, free_views{};  // stubs in the place of what an earlier bake wrote
   SealMaker seal{};
@@ -69,16 +75,26 @@ int put(Json& array, std::set<size_t>& free, Json value) {
   return int(place);
 }
 
-int addBufferView(Output& out, std::string_view bytes, int target, size_t stride = 0) {
-  if (out.binary.size() + bytes.size() > UINT32_MAX)
-    throw InputError("", "the asset would take more than " + std::to_string(out.binary.size() + bytes.size()) +
+// Adds a piece at the next multiple of four bytes. It must last as long as the output.
+void addPiece(Output& out, std::string_view bytes) {
+  static constexpr char kZeros[4] = {};
+  for (const std::string_view piece : {std::string_view(kZeros, (4 - out.size % 4) % 4), bytes})
+    if (!piece.empty()) out.pieces.push_back(piece), out.size += piece.size();
+}
+
+// Of bytes that last as long as the output: those of the sculpt.
+int addBufferView(Output& out, std::string_view lasting, int target, size_t stride = 0) {
+  if (out.size + lasting.size() > UINT32_MAX)
+    throw InputError("", "the asset would take more than " + std::to_string(out.size + lasting.size()) +
                              " bytes, but a GLB holds at most 4 GiB; use fewer vertices");
-  out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
-  Json view = {{"buffer", 0}, {"byteOffset", out.binary.size()}, {"byteLength", bytes.size()}};
+  addPiece(out, lasting);
+  Json view = {{"buffer", 0}, {"byteOffset", out.size - lasting.size()}, {"byteLength", lasting.size()}};
   if (stride != 0) view["byteStride"] = stride;
   if (target != 0) view["target"] = target;
-  out.binary.append(bytes);
   return put(arrayOf(out.json, "bufferViews"), out.free_views, std::move(view));
+}
+int addBufferView(Output& out, std::string own, int target, size_t stride = 0) {
+  return addBufferView(out, std::string_view(out.owned.emplace_back(std::move(own))), target, stride);
 }
 
 template <typename T>
@@ -86,11 +102,17 @@ std::string_view bytesOf(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-// Adds an accessor, or returns the existing one with the same bytes.
-int addAccessor(Output& out, std::string_view bytes, int component_type, const char* type, size_t count, const Json& bounds = {}) {
+template <typename T>
+std::string copiedBytesOf(const std::vector<T>& values) {
+  return std::string(bytesOf(values));
+}
+
+// Adds an accessor, or returns the existing one with the same bytes. They last as long as the output, or are a std::string.
+template <class Bytes>
+int addAccessor(Output& out, Bytes bytes, int component_type, const char* type, size_t count, const Json& bounds = {}) {
   const std::string key = hashBytes(bytes) + type + std::to_string(component_type);
   if (const auto known = out.known_accessors.find(key); known != out.known_accessors.end()) return known->second;
-  Json accessor = {{"bufferView", addBufferView(out, bytes, bounds.contains("index") ? kIndexTarget : kVertexTarget)}};
+  Json accessor = {{"bufferView", addBufferView(out, std::move(bytes), bounds.contains("index") ? kIndexTarget : kVertexTarget)}};
   accessor["componentType"] = component_type;
   accessor["count"] = count;
   accessor["type"] = type;
@@ -105,7 +127,7 @@ int addIndices(Output& out, std::span<const Triangle> triangles, size_t vertices
   std::vector<uint16_t> narrow;
   for (const Triangle& t : triangles)
     for (const uint32_t index : t) narrow.push_back(uint16_t(index));
-  return addAccessor(out, bytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
+  return addAccessor(out, copiedBytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
 }
 
 std::set<int> takenUvSets(const Sculpt& sculpt) {
@@ -127,25 +149,34 @@ void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lo
                 bool attribute, Json& attributes, Warnings& warnings) {
   for (int lower = 0; lower < set; ++lower) {
     if (attributes.contains(uvSetName(lower))) continue;
-    attributes[uvSetName(lower)] = addAccessor(out, bytesOf(std::vector<Vec2>(lobes.size())), kFloat, "VEC2", lobes.size());
+    attributes[uvSetName(lower)] = addAccessor(out, copiedBytesOf(std::vector<Vec2>(lobes.size())), kFloat, "VEC2", lobes.size());
     warnings.add(WarningKind::kMissingUvSet,
                  "'" + part.name + "' has no " + uvSetName(lower) + "; zeros were written, because glTF allows no gap");
   }
-  auto from_scene = inverted(part.to_scene);
-  std::vector<LobeUvs> stored;
-  std::vector<Vec2> first, second;
-  std::vector<float> all;
-  for (size_t v = 0; v < lobes.size(); ++v) {
-    if (!part.vertex_to_scene.empty()) from_scene = inverted(part.vertex_to_scene[v]);
-    if (!from_scene) throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
-    const LobeUvs& uvs = stored.emplace_back(packLobe(lobes[v], *from_scene));
-    first.push_back(uvs.first), second.push_back(uvs.second);
-    all.insert(all.end(), {uvs.first.x, uvs.first.y, uvs.second.x, uvs.second.y});
-  }
-  attributes[uvSetName(set)] = addAccessor(out, bytesOf(first), kFloat, "VEC2", lobes.size());
-  attributes[uvSetName(set + 1)] = addAccessor(out, bytesOf(second), kFloat, "VEC2", lobes.size());
-  if (attribute) attributes["_OCCLUSION"] = addAccessor(out, bytesOf(all), kFloat, "VEC4", lobes.size());
+  constexpr size_t kGrain = 1 << 14;
+  const auto from_scene = inverted(part.to_scene);
+  const size_t count = lobes.size();
+  const bool is_skinned = !part.vertex_to_scene.empty();
+  if (firstWhere(is_skinned ? count : 1, [&](size_t v) { return !(is_skinned ? inverted(part.vertex_to_scene[v]) : from_scene); }) <
+      (is_skinned ? count : 1))
+    throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
+  std::vector<LobeUvs> stored(count);
+  parallelBlocks(count, kGrain, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) stored[v] = packLobe(lobes[v], is_skinned ? *inverted(part.vertex_to_scene[v]) : *from_scene);
+  });
   out.seal.add(part, stored, harmonics);
+  const auto add = [&](int width, const char* type, const auto& values_of) {
+    std::string bytes(count * size_t(width) * sizeof(float), '\0');
+    parallelBlocks(count, kGrain, [&](size_t begin, size_t end) {
+      for (size_t v = begin; v < end; ++v)
+        std::memcpy(&bytes[v * size_t(width) * sizeof(float)], values_of(stored[v]), size_t(width) * sizeof(float));
+    });
+    return addAccessor(out, std::move(bytes), kFloat, type, count);
+  };
+  static_assert(sizeof(LobeUvs) == 4 * sizeof(float));
+  attributes[uvSetName(set)] = add(2, "VEC2", [](const LobeUvs& uvs) { return &uvs.first; });
+  attributes[uvSetName(set + 1)] = add(2, "VEC2", [](const LobeUvs& uvs) { return &uvs.second; });
+  if (attribute) attributes["_OCCLUSION"] = addAccessor(out, copiedBytesOf(stored), kFloat, "VEC4", count);
 }
 
 // Writes attributes of four coefficients each; the last one is padded with zeros.
@@ -155,7 +186,7 @@ void writeHarmonics(Output& out, std::span<const float> coefficients, size_t ver
   for (size_t first = 0; first < count; first += 4) {
     std::vector<float> four(4 * vertices, 0);
     for (size_t v = 0; v < vertices; ++v) std::copy_n(&coefficients[v * count + first], std::min<size_t>(4, count - first), &four[4 * v]);
-    attributes[harmonicsName(int(first / 4))] = addAccessor(out, bytesOf(four), kFloat, "VEC4", vertices);
+    attributes[harmonicsName(int(first / 4))] = addAccessor(out, copiedBytesOf(four), kFloat, "VEC4", vertices);
   }
 }
 
@@ -163,9 +194,8 @@ void writeHarmonics(Output& out, std::span<const float> coefficients, size_t ver
 void foldBuffers(const GltfDocument& document, Output& out) {
   std::vector<size_t> starts;
   for (const std::vector<unsigned char>& buffer : document.buffers) {
-    out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
-    starts.push_back(out.binary.size());
-    out.binary.append(buffer.begin(), buffer.end());
+    addPiece(out, {reinterpret_cast<const char*>(buffer.data()), buffer.size()});
+    starts.push_back(out.size - buffer.size());
   }
   for (Json& view : arrayOf(out.json, "bufferViews")) {
     const auto buffer = uint64_t(wholeNumber(view.at("buffer")));
@@ -180,7 +210,7 @@ void foldBuffers(const GltfDocument& document, Output& out) {
 }
 
 void embedImage(Output& out, size_t image, std::string_view bytes, std::string_view mime_type) {
-  const int view = addBufferView(out, bytes, 0);
+  const int view = addBufferView(out, std::string(bytes), 0);
   Json& json = out.json["images"][image];
   json.erase("uri");
   json["mimeType"] = mime_type;
@@ -225,7 +255,8 @@ int addLike(Output& out, const tinygltf::Accessor& model, const std::vector<floa
     std::memcpy(at, type == kFloat ? static_cast<const void*>(&values[i]) : &whole, size);
   }
   constexpr std::array kTypes{"SCALAR", "VEC2", "VEC3", "VEC4"};
-  Json accessor = {{"bufferView", addBufferView(out, bytes, kVertexTarget, stride == size * width ? 0 : stride)}, {"componentType", type}};
+  Json accessor = {{"bufferView", addBufferView(out, std::move(bytes), kVertexTarget, stride == size * width ? 0 : stride)},
+                   {"componentType", type}};
   if (type != kFloat) accessor["normalized"] = true;
   accessor["count"] = count;
   accessor["type"] = kTypes[width - 1];
@@ -329,7 +360,7 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
     for (const GltfStretch& stretch : stretches) primitives.emplace_back(meshes[i], stretch.primitive);
   }
   if (settings.keep_alive_texture == KeepAliveTexture::kOff || primitives.empty()) return;
-  const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
+  const auto add_image = [&](std::string_view png) { return addBufferView(out, std::string(png), 0); };
   bindKeepAliveTextures(out.json, primitives, set, settings.keep_alive_texture, document.white_texture, add_image, document.file.string(),
                         warnings);
 }
@@ -362,7 +393,7 @@ int addColors(Output& out, const std::vector<std::array<float, 4>>& colors) {
     return addAccessor(out, bytesOf(colors), kFloat, "VEC4", colors.size());
   std::vector<float> opaque;
   for (const auto& color : colors) opaque.insert(opaque.end(), color.begin(), color.begin() + 3);
-  return addAccessor(out, bytesOf(opaque), kFloat, "VEC3", colors.size());
+  return addAccessor(out, copiedBytesOf(opaque), kFloat, "VEC3", colors.size());
 }
 
 // What a part has before the bake, without its indices.
@@ -383,7 +414,7 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
   Json& json = out.json;
   json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
   for (const char* key : {"nodes", "meshes", "materials"}) json[key] = Json::array();
-  const auto add_image = [&](std::string_view bytes) { return addBufferView(out, bytes, 0); };
+  const auto add_image = [&](std::string_view bytes) { return addBufferView(out, std::string(bytes), 0); };
   writeMaterials(sculpt, add_image, json);
   const std::vector<SculptNode> nodes = nodesOf(sculpt);
   const std::vector<PlacedSculptNode> placed = placeNodes(nodes, warnings);
@@ -391,7 +422,7 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
   std::vector<GltfPrimitive> written;
   for (size_t i = 0; i < sculpt.parts.size(); ++i) {
     const size_t node = sculpt.nodes.empty() ? i : size_t(sculpt.parts[i].node);
-    const SculptPart part = placed.at(node).in_scene_space ? movedToScene(sculpt.parts[i]) : sculpt.parts[i];
+    const SculptPart& part = placed.at(node).in_scene_space ? out.moved.emplace_back(movedToScene(sculpt.parts[i])) : sculpt.parts[i];
     if (part.triangles.empty()) throw InputError("", "'" + part.name + "' has no triangles; leave it out");
     Json attributes = attributesOf(out, part);
     writeLobes(out, part, baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
@@ -473,8 +504,8 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
     writeAsset(info, set, out.seal, out.json);
     Json& buffers = arrayOf(out.json, "buffers");
     if (buffers.empty()) buffers.push_back(Json::object());
-    buffers[0]["byteLength"] = out.binary.size();
-    return joinGlb(file, out.json.dump(), out.binary);
+    buffers[0]["byteLength"] = out.size;
+    return joinGlb(file, out.json.dump(), out.pieces);
   } catch (const Json::exception& error) {
     throw InputError(file, std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
   }

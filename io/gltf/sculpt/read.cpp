@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "core/error.h"
+#include "core/first_where.h"
 #include "core/text/json.h"
 #include "core/text/plain_text.h"
 #include "io/file/neighbour.h"
@@ -173,12 +175,16 @@ std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary
   return nodes;
 }
 
+void checkIndices(const fs::path& file, std::span<const uint32_t> indices, size_t vertices, const std::string& owner) {
+  const size_t wrong = firstWhere(indices.size(), [&](size_t i) { return indices[i] >= vertices; });
+  if (wrong < indices.size())
+    throw InputError(file.string(), owner + " uses vertex " + std::to_string(indices[wrong]) + " of " + std::to_string(vertices) +
+                                        "; the file is damaged, export it again");
+}
+
 std::vector<Triangle> trianglesOf(const fs::path& file, const std::vector<uint32_t>& indices, int mode, size_t vertices,
                                   const std::string& owner) {
-  for (const uint32_t index : indices)
-    if (index >= vertices)
-      throw InputError(file.string(), owner + " uses vertex " + std::to_string(index) + " of " + std::to_string(vertices) +
-                                          "; the file is damaged, export it again");
+  checkIndices(file, indices, vertices, owner);
   std::vector<Triangle> triangles;
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     if (indices.size() % 3 != 0)
@@ -195,13 +201,6 @@ std::vector<Triangle> trianglesOf(const fs::path& file, const std::vector<uint32
   return triangles;
 }
 
-std::vector<Vec3> readVec3(const GltfAccessors& accessors, int accessor, const std::string& owner) {
-  const std::vector<float> floats = accessors.readFloats(accessor, 3, owner);
-  std::vector<Vec3> result(floats.size() / 3);
-  for (size_t i = 0; i < result.size(); ++i) result[i] = {floats[3 * i], floats[3 * i + 1], floats[3 * i + 2]};
-  return result;
-}
-
 // Adds weight·target to every vertex, for POSITION and NORMAL. Uses the node's weights if it has its own, else the mesh's.
 void applyMorphTargets(const fs::path& file, const GltfAccessors& accessors, const tinygltf::Primitive& primitive,
                        const std::vector<double>& weights, const std::string& owner, SculptPart& part) {
@@ -210,7 +209,7 @@ void applyMorphTargets(const fs::path& file, const GltfAccessors& accessors, con
     for (const auto& [attribute, accessor] : primitive.targets[target]) {
       std::vector<Vec3>* moved = attribute == "POSITION" ? &part.positions : attribute == "NORMAL" ? &part.normals : nullptr;
       if (!moved || moved->empty()) continue;
-      const std::vector<Vec3> delta = readVec3(accessors, accessor, owner + "'s morph target");
+      const std::vector<Vec3> delta = accessors.readVectors(accessor, owner + "'s morph target");
       if (delta.size() != moved->size())
         throw InputError(file.string(), owner + " has a morph target of a different size; export the file again");
       for (size_t i = 0; i < delta.size(); ++i) (*moved)[i] += delta[i] * float(weights[target]);
@@ -335,18 +334,21 @@ class PartReader {
     SculptPart part;
     part.name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : "node " + std::to_string(placed.node);
     part.object = placed.node;
-    part.positions = readVec3(accessors, primitive.attributes.at("POSITION"), owner);
+    part.positions = accessors.readVectors(primitive.attributes.at("POSITION"), owner);
     if (part.positions.empty()) {
       warnings_.add(WarningKind::kPartIgnored, file_.string() + ": " + owner + " has no vertices", bundle.size());
       return std::nullopt;
     }
     const auto normal = primitive.attributes.find("NORMAL");
-    if (normal != primitive.attributes.end()) part.normals = readVec3(accessors, normal->second, owner);
+    if (normal != primitive.attributes.end()) part.normals = accessors.readVectors(normal->second, owner);
     applyMorphTargets(file_, accessors, primitive, node.weights.empty() ? mesh.weights : node.weights, owner, part);
     for (const int index : bundle) {
-      const std::vector<Triangle> own = readTriangles(accessors, placed, index, part.positions.size());
-      part.triangles.insert(part.triangles.end(), own.begin(), own.end());
+      std::vector<Triangle> own = readTriangles(accessors, placed, index, part.positions.size());
       place.stretches.push_back({index, own.size()});
+      if (part.triangles.empty())
+        part.triangles = std::move(own);
+      else
+        part.triangles.insert(part.triangles.end(), own.begin(), own.end());
     }
     part.fixed = fixedBecause(model_, primitive, node.skin >= 0, part.positions.size());
     if (node.skin >= 0) part.vertex_to_scene = poser_.mapsOf(primitive, node.skin, part.positions, owner, warnings_);
@@ -357,6 +359,13 @@ class PartReader {
   std::vector<Triangle> readTriangles(const GltfAccessors& accessors, const PlacedNode& placed, int index, size_t vertices) const {
     const tinygltf::Primitive& primitive = primitiveOf(placed, index);
     const std::string owner = ownerText(placed, index);
+    const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    if (mode == TINYGLTF_MODE_TRIANGLES && primitive.indices >= 0 && size_t(primitive.indices) < model_.accessors.size() &&
+        model_.accessors[size_t(primitive.indices)].count % 3 == 0) {
+      std::vector<Triangle> triangles = accessors.readTriangles(primitive.indices, owner);
+      checkIndices(file_, {triangles.empty() ? nullptr : triangles.front().data(), 3 * triangles.size()}, vertices, owner);
+      return triangles;
+    }
     std::vector<uint32_t> indices;
     if (primitive.indices >= 0) {
       indices = accessors.readIndices(primitive.indices, owner);
@@ -364,7 +373,7 @@ class PartReader {
       indices.resize(vertices);
       std::iota(indices.begin(), indices.end(), 0U);
     }
-    return trianglesOf(file_, indices, primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode, vertices, owner);
+    return trianglesOf(file_, indices, mode, vertices, owner);
   }
 
   const fs::path& file_;
@@ -419,7 +428,7 @@ Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings
   readImages(*loaded.document, settings, warnings);
   loaded.sculpt.frame_note = frameText(1, 'Y', false, "glTF's frame");
   for (const std::string& note : loaded.notes) loaded.sculpt.frame_note += "; " + note;
-  return loaded.sculpt;
+  return std::move(loaded.sculpt);
 }
 
 std::string sourceHash(const Sculpt& sculpt, std::string_view bytes) {

@@ -8,6 +8,7 @@
 #include "bake/field/dense_field.h"
 #include "bake/field/level_set.h"
 #include "bake/lobe/fit_lobe.h"
+#include "bake/lobe/sparse_points.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_target.h"
@@ -69,6 +70,13 @@ std::vector<Result> computeAll() {
   fit.extinctions = {1, 2, 5};
   const std::vector<Lobe> starts(mesh.positions.size(), {{0, 1, 0}, 0.5F});
   results.push_back(resultOf("fit", fitLobes(starts, {bothSenses(axes), by_point, {}}, fit)));
+  // Many places with few cells, whose lobes are blended
+  const SurfaceMesh fine = torusMesh(1, 0.4F, 521, 307);
+  const CoverageField coarse = coverageFromMesh(fine, {{0, 0, 0}, 0.1}).value();
+  const SparsePoints sparse = SparsePoints::choose({fine.positions, fine.normals}, coarse).value();
+  std::vector<Lobe> some;
+  for (const size_t v : sparse.chosen()) some.push_back({fine.normals[v], 1 + fine.positions[v].y});
+  results.push_back(resultOf("blended", sparse.blended(some)));
   const DenseField dense = denseFromLevelSet(level_set);
   for (const Sampler sampler : {Sampler::kStratified, Sampler::kFibonacci, Sampler::kUniform})
     for (const Quadrature quadrature : {Quadrature::kCrossing, Quadrature::kMidpoint, Quadrature::kEnd}) {

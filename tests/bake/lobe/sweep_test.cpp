@@ -591,3 +591,17 @@ TEST(Sweep, PrintsItsHash) {
     for (const Lobe& lobe : lobes) ASSERT_TRUE(isFinite(lobe.direction));
   }
 }
+
+// Many points are baked in blocks, which changes none of them.
+TEST(Sweep, BakesManyPointsAsFew) {
+  const SurfaceMesh mesh = torusMesh(1, 0.4F, 700, 400);
+  const CoverageField field = coverageFromMesh(mesh, {{0, 0, 0}, 0.1}).value();
+  Warnings warnings;
+  const std::vector<Lobe> all = bakeSweep({mesh.positions, mesh.normals}, field, sweepSettings(16, 4), warnings);
+  for (const size_t first : {size_t(0), mesh.positions.size() / 2 - 50, mesh.positions.size() - 100}) {
+    const auto positions = std::span(mesh.positions).subspan(first, 100), normals = std::span(mesh.normals).subspan(first, 100);
+    const std::vector<Lobe> some = bakeSweep({positions, normals}, field, sweepSettings(16, 4), warnings);
+    for (size_t i = 0; i < some.size(); ++i)
+      EXPECT_TRUE(some[i].direction == all[first + i].direction && some[i].thickness == all[first + i].thickness);
+  }
+}

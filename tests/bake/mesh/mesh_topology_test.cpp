@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -117,6 +118,53 @@ TEST(MeshTopology, EdgesComeInOrderWithAllTheirSides) {
   EXPECT_EQ(edgesWith(Degenerate::kLeftOut), expected);
   expected.push_back({{2, 5}, 2});
   EXPECT_EQ(edgesWith(Degenerate::kKept), expected);
+}
+
+// More vertices and triangles than one thread takes at a time.
+TEST(MeshTopology, FindsFewDefectsAmongMany) {
+  constexpr int kMajor = 400, kMinor = 250;
+  const SurfaceMesh whole = torusMesh(2, 0.5F, kMajor, kMinor);
+  SurfaceMesh mesh = whole;
+  const size_t count = mesh.triangles.size();
+  size_t edges = 0;
+  std::pair<uint32_t, uint32_t> last{0, 0};
+  forEachEdge(mesh.positions.size(), mesh.triangles, Degenerate::kLeftOut, [&](uint32_t low, std::span<EdgeSide> sides) {
+    const std::pair<uint32_t, uint32_t> ends{low, sides.front().high};
+    EXPECT_EQ(sides.size(), 2U);
+    EXPECT_LT(last, ends);
+    last = ends, ++edges;
+  });
+  EXPECT_EQ(edges, 3 * mesh.positions.size());
+
+  const Triangle doubled = mesh.triangles[1000];
+  mesh.triangles.push_back({doubled[1], doubled[2], doubled[0]});
+  std::swap(mesh.triangles[count / 2][0], mesh.triangles[count / 2][1]);
+  mesh.triangles[count - 7][0] = mesh.triangles[count - 7][1];
+  mesh.positions.push_back({0, 9, 0});
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    const MeshDefects defects = findDefects(mesh);
+    EXPECT_EQ(defects.duplicate_triangles.count, 1U);
+    EXPECT_EQ(defects.duplicate_triangles.first, count);
+    EXPECT_EQ(defects.turned_edges.count, 3U);
+    EXPECT_EQ(defects.non_manifold_edges.count, 3U);
+    EXPECT_EQ(defects.non_manifold_edges.first, 501U);  // a neighbour of triangle 1000
+    EXPECT_EQ(defects.open_edges.count, 3U);
+    EXPECT_EQ(defects.degenerate_triangles.count, 1U);
+    EXPECT_EQ(defects.degenerate_triangles.first, count - 7);
+    EXPECT_EQ(defects.unreferenced_vertices.count, 1U);
+    EXPECT_EQ(defects.unreferenced_vertices.first, mesh.positions.size() - 1);
+    EXPECT_EQ(defects.unmatched_edges, 3U + 3 * 2U + 3U);
+  }
+
+  // Every triangle with vertices of its own is the same mesh after welding.
+  SurfaceMesh split;
+  for (const Triangle& t : whole.triangles) {
+    const auto first = uint32_t(split.positions.size());
+    for (const uint32_t v : t) split.positions.push_back(whole.positions[v]);
+    split.triangles.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_EQ(findDefects(split).unmatched_edges, 0U);
 }
 
 TEST(MeshTopology, SmoothNormalsLookThroughSeams) {
