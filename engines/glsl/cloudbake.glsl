@@ -38,7 +38,7 @@ const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 // The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
 // the unit vector to the sun. The sky is above, along `up`.
 vec2 cloudbakeLight(vec2 first, vec2 second, mat3 to_world, vec3 to_sun, vec3 up) {
-  vec4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  vec4 lobe = lobeInWorld(decodeLobe(first, second, 0.0, CLOUDBAKE_DENSITY_MAX), to_world);
   return vec2(lobeTransmittance(lobe, to_sun, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION),
               lobeTransmittance(lobe, up, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION));
 }

@@ -33,7 +33,7 @@ static const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 // The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
 // the unit vector to the sun. The sky is above, along `up`.
 float2 cloudbakeLight(float2 first, float2 second, float3x3 to_world, float3 to_sun, float3 up) {
-  float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  float4 lobe = lobeInWorld(decodeLobe(first, second, 0.0, CLOUDBAKE_DENSITY_MAX), to_world);
   return float2(lobeTransmittance(lobe, to_sun, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION),
                 lobeTransmittance(lobe, up, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION));
 }
