@@ -31,8 +31,8 @@ constexpr size_t kIntervals = 256;
 
 // All lobes of a cell, in scene space.
 struct Cell {
-  double chord = 2;                               // of two directions
-  double density = 0, low = 0, high = 0;          // the stored d and the range
+  double chord = 2;                       // of two directions
+  double density = 0, low = 0, high = 0;  // the stored d and the range
 };
 
 // ‖A‖ from above, and whether A is a similarity: a rotation or mirror, and a scale of all axes.

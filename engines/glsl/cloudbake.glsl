@@ -4,6 +4,8 @@
 // k, b and sigma of the asset; b and sigma are in its scene's units. Where a whole scene is scaled by c, use b * c and sigma / c.
 const vec2 CLOUDBAKE_SHAPE = vec2(@exponent@, @bias@);
 const float CLOUDBAKE_EXTINCTION = @extinction@;
+// The largest d of a packed asset; 0.0: the asset is not packed.
+const float CLOUDBAKE_DENSITY_MAX = @density_max@;
 // The lobes are in TEXCOORD_@first_set@ and TEXCOORD_@second_set@.
 
 // The light and the fog of a scene file, or those of the previewer: the unit vector to the sun, linear colors, half-Lambert of sun and sky,

@@ -48,6 +48,7 @@ func _material(info):
 			push_error("%s: extras.cloudbake.%s is %s, not a number of 32 bits: bake it again." % [get_source_file(), name, info[name]])
 			continue
 		material.set_shader_param(name, info[name])
+	material.set_shader_param("density_max", float(info.get("density_max", 0)))    # of a packed asset
 	material.set_shader_param("of_volume", 1.0 if info.get("fit_to") == "volume" else 0.0)
 	ResourceSaver.save(path, material)
 	material.take_over_path(path)

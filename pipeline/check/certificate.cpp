@@ -18,7 +18,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr size_t kLights = 512;
+constexpr int kLightsOfCertificate = 512;
 constexpr int kExtinctions = 5;
 
 struct StoredNumbers {
@@ -49,7 +49,7 @@ void measureAgainst(const std::filesystem::path& file, const std::filesystem::pa
   const BakedMesh asset = decodeGlb(file, readFileBytes(file), warnings, read);
   const BakedMesh before = decodeGlb(before_file, readFileBytes(before_file), warnings, read);
   const std::vector<uint32_t> matches = matchVertices(asset.surface, before.surface);
-  const std::vector<Vec3> lights = fibonacciDirections(kLights);
+  const std::vector<Vec3> lights = fibonacciDirections(kLightsOfCertificate);
   std::vector<double> most(matches.size());
   parallelFor(matches.size(), [&](size_t v) {
     if (matches[v] == kUnmatched) return;
@@ -67,7 +67,7 @@ void measureAgainst(const std::filesystem::path& file, const std::filesystem::pa
   figures.largest = most.empty() ? 0 : *std::max_element(most.begin(), most.end());
 }
 
-std::optional<AssetFault> judge(const CertificateFigures& figures) {
+std::optional<AssetFault> judgeCertificate(const CertificateFigures& figures) {
   const double most = figures.recorded.transmittance, found = figures.proved.transmittance;
   const char* const pack = "pack the asset again: bake it with --pack 8";
   if (found > most)
@@ -95,7 +95,8 @@ CheckReport checkCertificate(const Settings& settings, const std::function<void(
   const StoredAsset stored = readStoredAsset(file, readFileBytes(file), report.run.warnings, settings.source.read);
   report.file = examineAsset(file, stored);
   if (stored.info) report.run.info = *stored.info;
-  for (const SculptPart& part : stored.sculpt.parts) report.run.vertices += part.positions.size(), report.run.triangles += part.triangles.size();
+  for (const SculptPart& part : stored.sculpt.parts)
+    report.run.vertices += part.positions.size(), report.run.triangles += part.triangles.size();
   watch.lap(report.run.seconds, "read");
   if (report.file.fatal || !report.file.faults.empty()) {
     report.verdict = report.file.fatal ? *report.file.fatal : report.file.faults.front();
@@ -120,7 +121,7 @@ CheckReport checkCertificate(const Settings& settings, const std::function<void(
   figures.proved = certify(parts, info, figures.recorded);
   watch.lap(report.run.seconds, "certificate");
   if (settings.judge.against) measureAgainst(file, *settings.judge.against, settings.source.read, figures, report.run.warnings);
-  report.verdict = judge(figures);
+  report.verdict = judgeCertificate(figures);
   return report;
 }
 

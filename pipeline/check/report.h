@@ -47,7 +47,7 @@ struct ComparisonFigures {
 /// The certificate of a packed asset, and what its integers prove.
 struct CertificateFigures {
   PackingCertificate recorded, proved;
-  uint64_t matched = 0;            ///< vertices that the other asset has too
+  uint64_t matched = 0;           ///< vertices that the other asset has too
   std::optional<double> largest;  ///< the largest difference of T from it, if there is one
 };
 

@@ -8,8 +8,8 @@
 // TEXCOORD_n+1 begins at byte 4, because accessors of vertices begin at whole words: its first number repeats z and is not read.
 //
 // The node of a mesh undoes the grid by a scale that is the same along all axes, so that directions stay. It is a power of two, so that
-// places come back without rounding, and packing what was packed changes nothing. Lobes are stored in the space of the mesh, so d is divided
-// by the scale. d_max is one per file. So meshes get about the same grid in the scene, whatever their nodes scale.
+// places come back without rounding, and packing what was packed changes nothing. Lobes are stored in the space of the mesh, so d is
+// divided by the scale. d_max is one per file. So meshes get about the same grid in the scene, whatever their nodes scale.
 #include "io/gltf/asset/pack.h"
 
 #include <algorithm>
@@ -40,6 +40,10 @@ namespace {
 
 constexpr int kByte = 5120, kShort = 5122, kTriangles = 4, kTriangleStrip = 5;
 constexpr double kMostPlaces = 65532;  // of the grid along an axis: its middle is itself a place
+// The codec of meshopt gains from small differences, so it gets a coarser grid of at least as many places, of which an edge of a cloud has
+// some 40 (a cloud of n vertices is about √n / 2 edges across), and as few steps of d as keep half of what the certificate allows.
+constexpr double kCodecPlaces = 8190, kCodecPlacesPerEdge = 40;
+constexpr int kCodecDensityBits = 6;
 constexpr const char *kQuantisation = "KHR_mesh_quantization", *kMeshopt = "EXT_meshopt_compression";
 
 // What would move with a node's grid.
@@ -58,6 +62,7 @@ struct View {
   size_t stride = 0;                // of vertices that may be compressed; 0: it stays as it is
   std::vector<uint32_t> triangles;  // indices that may be compressed
   size_t vertices = 0;              // that they refer to
+  std::string filtered{};           // instead of the bytes, for the filter OCTAHEDRAL
 };
 
 template <class T>
@@ -84,8 +89,10 @@ double powerAbove(double value) {
 
 class Packer {
  public:
-  Packer(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form, bool keep_numbers, Warnings& warnings)
-      : file_(file), info_(info), form_(form), keep_numbers_(keep_numbers), warnings_(warnings) {
+  // `spare_bits`: so many of the 16 of d stay zero.
+  Packer(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form, int spare_bits, bool keep_numbers,
+         Warnings& warnings)
+      : file_(file), info_(info), form_(form), spare_bits_(spare_bits), keep_numbers_(keep_numbers), warnings_(warnings) {
     Warnings told_at_the_bake;
     loaded_ = loadGltf(file, glb, {}, told_at_the_bake);
     json_ = loaded_.document->json;
@@ -97,7 +104,7 @@ class Packer {
     const bool moves = countDeformed() > 0;
     separate();
     if (!moves) chooseGrids();
-    info_.density_max = largestDensity();
+    info_.density_max = std::ldexp(largestDensity(), 2 * spare_bits_);
     for (const auto& [mesh, owner] : owners_) packMesh(mesh);
     addTriangles();
     placeAccessors();
@@ -108,6 +115,9 @@ class Packer {
     writeInfoOf();
     return form_ == PackForm::kMeshopt ? compressed() : joined();
   }
+
+  // The bound of its certificate.
+  double bound() const { return info_.certificate->transmittance; }
 
  private:
   // --- Reading ---
@@ -179,11 +189,17 @@ class Packer {
 
   void chooseGrids() {
     std::map<int, Box> boxes;
+    double places = kMostPlaces;
+    if (form_ == PackForm::kMeshopt) {
+      size_t vertices = 0;
+      for (const SculptPart& part : loaded_.sculpt.parts) vertices += part.positions.size();
+      places = std::min(places, std::max(kCodecPlaces, kCodecPlacesPerEdge * 2 * std::sqrt(double(vertices))));
+    }
     double of_scene = 0;  // a step of the coarsest grid that a mesh needs
     const auto sizeOf = [&](size_t part) { return longestColumn(loaded_.sculpt.parts[part].to_scene); };
     for (const auto& [mesh, part] : owners_) {
       boxes[mesh] = boxOf(mesh);
-      of_scene = std::max(of_scene, double(boxes[mesh].longestSide()) / kMostPlaces * sizeOf(part));
+      of_scene = std::max(of_scene, double(boxes[mesh].longestSide()) / places * sizeOf(part));
     }
     if (!(of_scene > 0)) return;
     for (const auto& [mesh, part] : owners_) {
@@ -296,11 +312,10 @@ class Packer {
     const std::string first = uvSetName(info_.first_uv_set), second = uvSetName(info_.first_uv_set + 1);
     const bool has_lobes = hasLobes(attributes);
     const size_t count = size_t(wholeNumber(json_["accessors"][size_t(wholeNumber(attributes["POSITION"]))].at("count")));
-    const bool has_normals = attributes.contains("NORMAL") &&
-                             json_["accessors"][size_t(wholeNumber(attributes["NORMAL"]))].value("count", size_t(0)) == count;
+    const bool has_normals =
+        attributes.contains("NORMAL") && json_["accessors"][size_t(wholeNumber(attributes["NORMAL"]))].value("count", size_t(0)) == count;
     const std::vector<int> key{take(attributes, "POSITION"), has_normals ? take(attributes, "NORMAL") : -1,
-                               has_lobes ? take(attributes, first) : -1, has_lobes ? take(attributes, second) : -1,
-                               mesh};
+                               has_lobes ? take(attributes, first) : -1, has_lobes ? take(attributes, second) : -1, mesh};
     std::vector<int>& accessors = known_[key];
     if (accessors.empty()) accessors = addBlock(grid, key, count);
     attributes["POSITION"] = accessors[0];
@@ -313,7 +328,8 @@ class Packer {
   // The interleaved vertices. `key` has the accessors of position, normal and the two sets, −1 where there is none.
   std::vector<int> addBlock(const Grid& grid, const std::vector<int>& key, size_t count) {
     const bool has_normals = key[1] >= 0, has_lobes = key[2] >= 0;
-    const size_t normal_at = has_lobes ? 12 : 8, stride = normal_at + (has_normals ? 4 : 0);
+    const bool are_apart = form_ == PackForm::kMeshopt;  // normals, because of their filter
+    const size_t normal_at = has_lobes ? 12 : 8, stride = normal_at + (has_normals && !are_apart ? 4 : 0);
     View view{std::string(stride * count, '\0'), stride, {}, 0};
     const std::vector<float> places = floats(key[0], 3);
     std::array<int, 3> low{INT16_MAX, INT16_MAX, INT16_MAX}, high{INT16_MIN, INT16_MIN, INT16_MIN};
@@ -331,7 +347,7 @@ class Packer {
         std::memcpy(at + 6, &lobes[v].root, 2), std::memcpy(at + 8, &lobes[v].u, 2), std::memcpy(at + 10, &lobes[v].v, 2);
       }
     }
-    if (has_normals) {
+    if (has_normals && !are_apart) {
       const std::vector<float> normals = floats(key[1], 3);
       for (size_t i = 0; i < 3 * count; ++i)
         store(view.bytes, stride * (i / 3) + normal_at + i % 3, int8_t(std::lround(127 * std::clamp(double(normals[i]), -1.0, 1.0))));
@@ -340,11 +356,22 @@ class Packer {
     Json position = accessorOf(at, 0, kShort, false, count, "VEC3");
     position["min"] = low, position["max"] = high;
     std::vector<int> accessors{addAccessor(std::move(position)), 0, 0, 0};
-    if (has_normals) accessors[1] = addAccessor(accessorOf(at, normal_at, kByte, true, count, "VEC3"));
+    if (has_normals)
+      accessors[1] = addAccessor(accessorOf(are_apart ? addNormals(key[1]) : at, are_apart ? 0 : normal_at, kByte, true, count, "VEC3"));
     if (!has_lobes) return accessors;
     accessors[2] = addAccessor(accessorOf(at, 8, kShort, true, count, "VEC2"));
     accessors[3] = addAccessor(accessorOf(at, 4, kUnsignedShort, true, count, "VEC2"));
     return accessors;
+  }
+
+  // A view of normals as the filter leaves them, for readers that see no compression; it is compressed from what goes into the filter.
+  int addNormals(int accessor) {
+    const std::vector<float> normals = floats(accessor, 3);
+    View view{std::string(normals.size() / 3 * 4, '\0'), 4, {}, 0};
+    for (size_t i = 0; i < normals.size(); ++i)
+      store(view.bytes, i / 3 * 4 + i % 3, int8_t(std::lround(127 * std::clamp(double(normals[i]), -1.0, 1.0))));
+    view.filtered = filteredNormals(normals);
+    return addView(std::move(view), kVertexTarget, 4);
   }
 
   // --- Triangles ---
@@ -416,7 +443,8 @@ class Packer {
   // Puts triangles and vertices in the order of the codec, if nothing else uses the vertices.
   void reorder(int mesh, size_t p) {
     Json& primitive = primitives(mesh)[p];
-    if (!isList(primitive) || !hasLobes(primitive["attributes"]) || primitive.contains("targets") || primitive.contains("extensions")) return;
+    if (!isList(primitive) || !hasLobes(primitive["attributes"]) || primitive.contains("targets") || primitive.contains("extensions"))
+      return;
     std::map<int, int> counts = useCounts();
     if (counts[int(wholeNumber(primitive["indices"]))] > 1) return;
     for (const Json& accessor : primitive["attributes"])
@@ -462,7 +490,8 @@ class Packer {
     view.byteStride = stride == size ? 0 : stride;
     Json& json = json_["accessors"][size_t(index)];
     json.erase("byteOffset");
-    json["bufferView"] = addView({std::move(bytes), stride, {}, 0}, stride == 0 ? kIndexTarget : kVertexTarget, stride == size ? 0 : stride);
+    json["bufferView"] =
+        addView({std::move(bytes), stride, {}, 0}, stride == 0 ? kIndexTarget : kVertexTarget, stride == size ? 0 : stride);
     accessor.bufferView = int(model().bufferViews.size()) - 1;
     accessor.byteOffset = 0;
   }
@@ -502,9 +531,9 @@ class Packer {
     const Grid& grid = grids_[mesh];
     if (grid.isNone()) return;
     const auto index = size_t(placeOf(part).node);
-    const bool is_alone = !json_.contains("animations") && !json_.contains("skins") &&
-                          std::none_of(std::begin(kDependants), std::end(kDependants),
-                                       [&](const char* key) { return json_["nodes"][index].contains(key); });
+    const bool is_alone =
+        !json_.contains("animations") && !json_.contains("skins") &&
+        std::none_of(std::begin(kDependants), std::end(kDependants), [&](const char* key) { return json_["nodes"][index].contains(key); });
     if (is_alone) {
       fold(grid, json_["nodes"][index]);
       return;
@@ -639,11 +668,11 @@ class Packer {
     std::vector<PackedPart> parts;
     for (size_t i = 0; i < numbers.size(); ++i) parts.push_back({plain.sculpt.parts[i], numbers[i]});
     info_.certificate = certify(parts, info_, certificateRange(info_));
-    if (double(info_.certificate->transmittance) > kMostPackedError)
-      throw InputError(file_.string(), "--pack: the transmittance of a lobe may change by up to " +
-                                           shortestText(info_.certificate->transmittance) +
-                                           ", more than 1/255, because the cloud is too thick for its extinction somewhere; leave out --pack, or "
-                                           "bake with a lower --extinction or with --fit-to volume");
+    if (bound() > kMostPackedError && spare_bits_ == 0)
+      throw InputError(file_.string(),
+                       "--pack: the transmittance of a lobe may change by up to " + shortestText(info_.certificate->transmittance) +
+                           ", more than 1/255, because the cloud is too thick for its extinction somewhere; leave out --pack, or "
+                           "bake with a lower --extinction or with --fit-to volume");
     info_.seal.reset();
     if (const AssetSeal finished = seal.finished(info_); isFinite(finished)) info_.seal = finished;
   }
@@ -663,14 +692,19 @@ class Packer {
         continue;
       }
       const size_t size = is_index ? view.bytes.size() / view.triangles.size() : view.stride, count = view.bytes.size() / size;
-      const std::string bytes =
-          is_index ? compressedTriangles(view.triangles, view.vertices) : compressedVertices(view.bytes, count, view.stride);
+      const std::string bytes = is_index ? compressedTriangles(view.triangles, view.vertices)
+                                         : compressedVertices(view.filtered.empty() ? view.bytes : view.filtered, count, view.stride);
       plain = (plain + 3) / 4 * 4;
       json["buffer"] = 1;
       json["byteOffset"] = plain;
       plain += view.bytes.size();
-      json["extensions"][kMeshopt] = {{"buffer", 0},         {"byteOffset", binary.size()}, {"byteLength", bytes.size()},
-                                      {"byteStride", size}, {"count", count},              {"mode", is_index ? "TRIANGLES" : "ATTRIBUTES"}};
+      json["extensions"][kMeshopt] = {{"buffer", 0},
+                                      {"byteOffset", binary.size()},
+                                      {"byteLength", bytes.size()},
+                                      {"byteStride", size},
+                                      {"count", count},
+                                      {"mode", is_index ? "TRIANGLES" : "ATTRIBUTES"}};
+      if (!view.filtered.empty()) json["extensions"][kMeshopt]["filter"] = "OCTAHEDRAL";
       binary += bytes;
     }
     json_["buffers"] = Json::array({{{"byteLength", binary.size()}}});
@@ -684,15 +718,16 @@ class Packer {
   const std::filesystem::path& file_;
   AssetInfo info_;
   const PackForm form_;
+  const int spare_bits_;
   const bool keep_numbers_;
   Warnings& warnings_;
   LoadedGltf loaded_;
   Json json_;
   std::vector<View> views_;
-  size_t first_views_ = 0;                      // those of the document as it was
-  std::map<int, size_t> owners_;                // mesh → its first part
-  std::map<int, int> copies_;                   // mesh → the copy that other nodes have
-  std::map<int, Grid> grids_;                   // per mesh
+  size_t first_views_ = 0;        // those of the document as it was
+  std::map<int, size_t> owners_;  // mesh → its first part
+  std::map<int, int> copies_;     // mesh → the copy that other nodes have
+  std::map<int, Grid> grids_;     // per mesh
   std::map<std::vector<int>, std::vector<int>> known_;
   std::vector<Json> added_;
   std::set<size_t> replaced_;
@@ -702,7 +737,17 @@ class Packer {
 
 std::string packGlb(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form, bool keep_numbers,
                     Warnings& warnings) {
-  return Packer(file, glb, info, form, keep_numbers, warnings).packed();
+  for (int spare_bits = form == PackForm::kMeshopt ? kCodecDensityBits : 0;; --spare_bits) {
+    Warnings own;
+    Packer packer(file, glb, info, form, spare_bits, keep_numbers, own);
+    std::string packed = packer.packed();
+    double over = 2 * packer.bound() / kMostPackedError;
+    if (spare_bits == 0 || over <= 1) {
+      for (const auto& [kind, entry] : own.entries()) warnings.add(kind, entry.first, entry.count);
+      return packed;
+    }
+    for (; spare_bits > 1 && over > 2; over /= 2) --spare_bits;  // the bound is at most proportional to the step
+  }
 }
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// Strips, orders and codecs of meshoptimizer. EXT_meshopt_compression (Khronos) wants version 0 of its codec of vertices and version 1 of
+// Orders, filters and codecs of meshoptimizer. EXT_meshopt_compression (Khronos) wants version 0 of its codec of vertices and version 1 of
 // that of indices.
 #include <meshoptimizer.h>
 
@@ -8,17 +8,9 @@
 
 namespace cloudbake {
 
-std::vector<uint32_t> stripOf(std::span<const uint32_t> triangles, size_t vertices) {
-  std::vector<uint32_t> ordered(triangles.size()), strip(meshopt_stripifyBound(triangles.size()));
-  meshopt_optimizeVertexCacheStrip(ordered.data(), triangles.data(), triangles.size(), vertices);
-  strip.resize(meshopt_stripify(strip.data(), ordered.data(), ordered.size(), vertices, 0));
-  if (strip.size() >= triangles.size()) strip.clear();
-  return strip;
-}
-
 std::vector<uint32_t> orderedForCodec(std::span<const uint32_t> triangles, size_t vertices, std::vector<uint32_t>& new_places) {
   std::vector<uint32_t> ordered(triangles.size());
-  meshopt_optimizeVertexCache(ordered.data(), triangles.data(), triangles.size(), vertices);
+  meshopt_optimizeVertexCacheStrip(ordered.data(), triangles.data(), triangles.size(), vertices);
   new_places.resize(vertices);
   size_t used = meshopt_optimizeVertexFetchRemap(new_places.data(), ordered.data(), ordered.size(), vertices);
   for (uint32_t& place : new_places)
@@ -28,9 +20,18 @@ std::vector<uint32_t> orderedForCodec(std::span<const uint32_t> triangles, size_
 
 std::string compressedVertices(std::string_view bytes, size_t count, size_t stride) {
   std::string compressed(meshopt_encodeVertexBufferBound(count, stride), '\0');
-  compressed.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(compressed.data()), compressed.size(), bytes.data(), count,
-                                               stride));
+  compressed.resize(
+      meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(compressed.data()), compressed.size(), bytes.data(), count, stride));
   return compressed;
+}
+
+std::string filteredNormals(std::span<const float> normals) {
+  constexpr int kBits = 8;
+  std::vector<float> four;
+  for (size_t i = 0; i + 2 < normals.size(); i += 3) four.insert(four.end(), {normals[i], normals[i + 1], normals[i + 2], 0});
+  std::string filtered(four.size(), '\0');
+  meshopt_encodeFilterOct(filtered.data(), four.size() / 4, 4, kBits, four.data());
+  return filtered;
 }
 
 std::string compressedTriangles(std::span<const uint32_t> triangles, size_t vertices) {

@@ -99,7 +99,6 @@ int findLobes(const StoredAsset& asset) {
   return named >= 0 && haveSets(asset, named) ? named : -1;
 }
 
-
 // Whether all float32 numbers are also representable as half floats: the 13 last bits of the mantissa are 0.
 bool areHalves(const std::vector<LobeUvs>& uvs) {
   uint64_t rounded = 0;
