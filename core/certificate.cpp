@@ -124,7 +124,8 @@ float roundedUp(double value) {
   double unit = 1;
   while (unit > value * 10) unit /= 10;
   const double digits = std::ceil(value / unit * 100) / 100;
-  return std::nextafter(float(digits * unit), 2.0F);
+  const auto rounded = float(digits * unit);
+  return double(rounded) < value ? std::nextafter(rounded, 2.0F) : rounded;
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kLightsOfCertificate = 512;
 constexpr int kExtinctions = 5;
+constexpr double kReach = 3e-4;  // of the diagonal: half a step of the coarsest grid, along all axes
 
 struct StoredNumbers {
   std::vector<std::vector<LobeUvs>> of_parts;
@@ -48,7 +49,7 @@ void measureAgainst(const std::filesystem::path& file, const std::filesystem::pa
                     CertificateFigures& figures, Warnings& warnings) {
   const BakedMesh asset = decodeGlb(file, readFileBytes(file), warnings, read);
   const BakedMesh before = decodeGlb(before_file, readFileBytes(before_file), warnings, read);
-  const std::vector<uint32_t> matches = matchVertices(asset.surface, before.surface);
+  const std::vector<uint32_t> matches = matchVertices(asset.surface, before.surface, kReach);
   const std::vector<Vec3> lights = fibonacciDirections(kLightsOfCertificate);
   std::vector<double> most(matches.size());
   parallelFor(matches.size(), [&](size_t v) {
