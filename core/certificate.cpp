@@ -3,7 +3,9 @@
 //
 //   |T − T'| ≤ max over σ of f(σ, s_min) · (|h^k − h'^k| d + h'^k |d − d'|)
 //
-// s_min is the smallest s of both. All h are covered by intervals; in each of them every factor is replaced by its upper end.
+// Where l is about along o or against it, h hardly changes: dh = −sin θ / 2 dθ = −√(h (1 − h)) dθ for the angle θ between l and o, and the
+// arc between the directions is at most 1.01 c for c ≤ 0.4. s_min is the smallest s of both. All h are covered by intervals; in each of
+// them every factor is replaced by its upper end.
 //
 // Chord: the unfolded octahedron is a continuous map of the square that is linear in pieces, and in each of them (du, dv) moves the point
 // by (±du, ±dv, ±du ± dv). So a cell of half side η keeps within √6 η of its centre's point p, 1/√3 ≤ |p| ≤ 1; and two vectors x and y that
@@ -84,6 +86,7 @@ Cell cellOf(const LobeUvs& stored, const Affine& map, const Norm& norm, double d
 // The powers at the ends of each interval of h, with what a cell adds on both sides.
 struct Interval {
   double lowest_power = 0, highest_power = 0;  // h^k
+  double turn = 0.5;                           // the most of √(h (1 − h)), with a margin: |h − h'| over c
   double slope = 0;                            // the most of |h^k − h'^k| / |h − h'|; for k < 1 without the cell around 0
 };
 
@@ -92,8 +95,8 @@ std::array<Interval, kIntervals> intervalsFor(double exponent, double delta) {
   const auto node = [](size_t i) { return double(i) / double(kIntervals) * (double(i) / double(kIntervals)); };
   for (size_t i = 0; i < kIntervals; ++i) {
     const double low = std::max(0.0, node(i) - delta), high = std::min(1.0, node(i + 1) + delta);
-    const double steepest = exponent >= 1 ? high : low;
-    intervals[i] = {portablePow(low, exponent), portablePow(high, exponent),
+    const double steepest = exponent >= 1 ? high : low, middle = std::clamp(0.5, low, high);
+    intervals[i] = {portablePow(low, exponent), portablePow(high, exponent), delta < 0.2 ? 1.01 * std::sqrt(middle * (1 - middle)) : 0.5,
                     exponent >= 1 || low > 0 ? exponent * portablePow(steepest, exponent - 1) : INFINITY};
   }
   return intervals;
@@ -108,12 +111,13 @@ double steepestIn(double s, const PackingCertificate& range) {
 
 double boundOf(const Cell& cell, const std::array<Interval, kIntervals>& intervals, double exponent, double bias,
                const PackingCertificate& range) {
-  const double delta = cell.chord / 2, density_change = std::max(cell.high - cell.density, cell.density - cell.low);
-  const double whole_power = exponent < 1 ? portablePow(delta, exponent) : INFINITY;  // |h^k − h'^k| ≤ |h − h'|^k
+  const double density_change = std::max(cell.high - cell.density, cell.density - cell.low);
   double most = 0;
   for (const Interval& interval : intervals) {
     if (interval.highest_power * cell.high + bias <= 0) continue;  // T is 1
-    const double shift = std::min(interval.slope * delta, whole_power) * cell.high + interval.highest_power * density_change;
+    const double delta = cell.chord * std::min(0.5, interval.turn);
+    const double whole = exponent < 1 ? portablePow(delta, exponent) : INFINITY;  // |h^k − h'^k| ≤ |h − h'|^k
+    const double shift = std::min(interval.slope * delta, whole) * cell.high + interval.highest_power * density_change;
     most = std::max(most, shift * steepestIn(std::max(0.0, interval.lowest_power * cell.low + bias), range));
   }
   return most;

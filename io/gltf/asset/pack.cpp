@@ -214,6 +214,11 @@ class Packer {
     }
   }
 
+  double scaleOf(int mesh) const {
+    const auto found = grids_.find(mesh);
+    return found == grids_.end() ? 1 : found->second.scale;
+  }
+
   float largestDensity() {
     float most = 0;
     for (const auto& [mesh, part] : owners_)
@@ -222,7 +227,7 @@ class Packer {
         const std::string second = uvSetName(info_.first_uv_set + 1);
         if (!hasLobes(attributes)) continue;
         const std::vector<float> values = floats(int(wholeNumber(attributes[second])), 2);
-        for (size_t i = 1; i < values.size(); i += 2) most = std::max(most, float(double(values[i]) / grids_[mesh].scale));
+        for (size_t i = 1; i < values.size(); i += 2) most = std::max(most, float(double(values[i]) / scaleOf(mesh)));
       }
     return most > 0 ? most : 1;
   }
@@ -545,7 +550,9 @@ class Packer {
     json_["nodes"].push_back(std::move(child));
     Json& node = json_["nodes"][index];
     node.erase("mesh");
-    node["children"].push_back(json_["nodes"].size() - 1);
+    Json children = Json::array({json_["nodes"].size() - 1});  // first, so that parts keep their order
+    for (const Json& other : node.value("children", Json::array())) children.push_back(other);
+    node["children"] = std::move(children);
   }
 
   // transform ∘ translation(offset) ∘ scale

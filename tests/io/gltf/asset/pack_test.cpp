@@ -4,7 +4,6 @@
 
 #include "core/certificate.h"
 #include "core/seal.h"
-#include "io/gltf/sculpt/read.h"
 #include "tests/io/gltf/gltf_helpers.h"
 
 using namespace cloudbake;
@@ -140,7 +139,6 @@ TEST(Pack, OfAPackedAssetIsTheSame) {
   const std::string twice = encodeGlb(again, once.lobes, sampleInfo(), packedAs(PackForm::kList), warnings);
   const BakedMesh baked = decodeGlb("twice.glb", twice, warnings);
   for (size_t v = 0; v < baked.surface.positions.size(); ++v) EXPECT_EQ(baked.surface.positions[v], once.baked.surface.positions[v]);
-  EXPECT_EQ(sourceHash(readMesh(folder.write("twice.glb", twice), {}, warnings), twice), sourceHash(again, once.glb));
   const std::string plain = encodeGlb(again, once.lobes, sampleInfo(), {}, warnings);
   EXPECT_EQ(decodeGlb("plain.glb", plain, warnings).info.density_max, 0);
 }
@@ -159,14 +157,10 @@ TEST(Pack, LeavesNodesWithChildrenAlone) {
   expectNearLobes(trip);
   EXPECT_EQ(trip.json["nodes"][0]["scale"], Json({1, 2, -3}));
   EXPECT_FALSE(trip.json["nodes"][0].contains("mesh"));
-  EXPECT_EQ(trip.json["nodes"][0]["children"], Json({1, 3}));
+  EXPECT_EQ(trip.json["nodes"][0]["children"], Json({3, 1}));
   const SurfaceMesh before = surfaceInScene(trip.sculpt);
   ASSERT_EQ(trip.baked.surface.positions.size(), before.positions.size());
-  std::vector<float> was, is;  // parts may come in another order
-  for (const Vec3 p : before.positions) was.push_back(p.x + 2 * p.y + 4 * p.z);
-  for (const Vec3 p : trip.baked.surface.positions) is.push_back(p.x + 2 * p.y + 4 * p.z);
-  std::sort(was.begin(), was.end()), std::sort(is.begin(), is.end());
-  for (size_t i = 0; i < was.size(); ++i) EXPECT_NEAR(was[i], is[i], 0.005);
+  for (size_t v = 0; v < before.positions.size(); ++v) EXPECT_LT(length(trip.baked.surface.positions[v] - before.positions[v]), 0.001F);
 }
 
 TEST(Pack, KeepsPositionsThatMorphTargetsMove) {
