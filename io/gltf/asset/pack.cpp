@@ -41,9 +41,10 @@ namespace {
 constexpr int kByte = 5120, kShort = 5122, kTriangles = 4, kTriangleStrip = 5;
 constexpr double kMostPlaces = 65532;  // of the grid along an axis: its middle is itself a place
 // The codec of meshopt gains from small differences, so it gets a coarser grid of at least as many places, of which an edge of a cloud has
-// some 40 (a cloud of n vertices is about √n / 2 edges across), and as few steps of d as keep half of what the certificate allows.
+// some 40 (a cloud of n vertices is about √n / 2 edges across), and as few steps of d as keep three quarters of what the certificate
+// allows.
 constexpr double kCodecPlaces = 8190, kCodecPlacesPerEdge = 40;
-constexpr int kCodecDensityBits = 6;
+constexpr int kCodecDensityBits = 8;
 constexpr const char *kQuantisation = "KHR_mesh_quantization", *kMeshopt = "EXT_meshopt_compression";
 
 // What would move with a node's grid.
@@ -90,14 +91,13 @@ double powerAbove(double value) {
 class Packer {
  public:
   // `spare_bits`: so many of the 16 of d stay zero.
-  Packer(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form, int spare_bits, bool keep_numbers,
-         Warnings& warnings)
-      : file_(file), info_(info), form_(form), spare_bits_(spare_bits), keep_numbers_(keep_numbers), warnings_(warnings) {
+  Packer(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form, int spare_bits,
+         std::optional<size_t> kept_views, Warnings& warnings)
+      : file_(file), info_(info), form_(form), spare_bits_(spare_bits), kept_views_(kept_views), warnings_(warnings) {
     Warnings told_at_the_bake;
     loaded_ = loadGltf(file, glb, {}, told_at_the_bake);
     json_ = loaded_.document->json;
     readViews();
-    first_views_ = views_.size();
   }
 
   std::string packed() {
@@ -607,13 +607,13 @@ class Packer {
     std::set<size_t> used;
     visitViews(json_, [&](Json& view) { used.insert(size_t(wholeNumber(view))); });
     Json& list = json_["bufferViews"];
-    if (keep_numbers_) {
+    if (kept_views_) {
       // New views move into the places of old ones.
       for (size_t old = 0, last = list.size(); old < list.size(); ++old) {
         if (used.contains(old)) continue;
         while (last > old + 1 && !used.contains(last - 1)) --last;
         const size_t from = last - 1;
-        if (from <= old || from < first_views_) {
+        if (from <= old || from < *kept_views_) {
           list[old] = {{"buffer", 0}, {"byteLength", 1}};
           views_[old] = {std::string(1, '\0'), 0, {}, 0};
           continue;
@@ -726,12 +726,11 @@ class Packer {
   AssetInfo info_;
   const PackForm form_;
   const int spare_bits_;
-  const bool keep_numbers_;
+  const std::optional<size_t> kept_views_;
   Warnings& warnings_;
   LoadedGltf loaded_;
   Json json_;
   std::vector<View> views_;
-  size_t first_views_ = 0;        // those of the document as it was
   std::map<int, size_t> owners_;  // mesh → its first part
   std::map<int, int> copies_;     // mesh → the copy that other nodes have
   std::map<int, Grid> grids_;     // per mesh
@@ -742,13 +741,13 @@ class Packer {
 
 }  // namespace
 
-std::string packGlb(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form, bool keep_numbers,
-                    Warnings& warnings) {
+std::string packGlb(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form,
+                    std::optional<size_t> kept_views, Warnings& warnings) {
   for (int spare_bits = form == PackForm::kMeshopt ? kCodecDensityBits : 0;; --spare_bits) {
     Warnings own;
-    Packer packer(file, glb, info, form, spare_bits, keep_numbers, own);
+    Packer packer(file, glb, info, form, spare_bits, kept_views, own);
     std::string packed = packer.packed();
-    double over = 2 * packer.bound() / kMostPackedError;
+    double over = 4.0 / 3 * packer.bound() / kMostPackedError;
     if (spare_bits == 0 || over <= 1) {
       for (const auto& [kind, entry] : own.entries()) warnings.add(kind, entry.first, entry.count);
       return packed;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,10 +15,11 @@
 namespace cloudbake {
 
 /// The bytes of a GLB of encodeGlb in the layout "lobe-packed". `info` is its metadata; the layout, density_max, the seal and the
-/// certificate are replaced. `keep_numbers`: accessors and buffer views keep their numbers, as those of an artist's document must. Counts
+/// certificate are replaced. `kept_views`: of an artist's document, how many buffer views it had;
+/// they and all accessors keep their numbers. Counts
 /// kPartNotPacked. Throws InputError if T may change by more than kMostPackedError.
-std::string packGlb(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form, bool keep_numbers,
-                    Warnings& warnings);
+std::string packGlb(const std::filesystem::path& file, std::string_view glb, const AssetInfo& info, PackForm form,
+                    std::optional<size_t> kept_views, Warnings& warnings);
 
 // The rest is what strip.cpp and pack_meshopt.cpp have for pack.cpp.
 

@@ -478,7 +478,10 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
     if (buffers.empty()) buffers.push_back(Json::object());
     buffers[0]["byteLength"] = out.binary.size();
     const std::string glb = joinGlb(file, out.json.dump(), out.binary);
-    return settings.pack ? packGlb(file, glb, resolved, settings.pack_form, sculpt.gltf != nullptr, warnings) : glb;
+    if (!settings.pack) return glb;
+    std::optional<size_t> kept_views;
+    if (sculpt.gltf) kept_views = sculpt.gltf->json.value("bufferViews", Json::array()).size();
+    return packGlb(file, glb, resolved, settings.pack_form, kept_views, warnings);
   } catch (const Json::exception& error) {
     throw InputError(file, std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
   }
