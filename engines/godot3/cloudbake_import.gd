@@ -6,6 +6,8 @@ tool
 extends EditorScenePostImport
 
 const FLOAT = 5126
+const SHORT = 5122
+const UNSIGNED_SHORT = 5123
 const GLB = 0x46546C67
 const FLOAT_MAX = 3.4028234e38  # shaders have 32 bits
 
@@ -117,14 +119,25 @@ func _move_sets_of(mesh, primitives, document, file, first_set):
 
 func _uv_set(document, file, number):
 	var values = PoolVector2Array()
-	if number == null or int(document.accessors[int(number)].componentType) != FLOAT:
+	var type = 0 if number == null else int(document.accessors[int(number)].componentType)
+	if not type in [FLOAT, SHORT, UNSIGNED_SHORT]:
 		return values
 	var accessor = document.accessors[int(number)]
 	var view = document.bufferViews[int(accessor.bufferView)]
 	file.seek(12)
 	var at = 28 + file.get_32() + int(view.get("byteOffset", 0)) + int(accessor.get("byteOffset", 0))
 	for i in int(accessor.count):
-		file.seek(at + i * int(view.get("byteStride", 8)))
-		var u = file.get_float()
-		values.append(Vector2(u, file.get_float()))
+		file.seek(at + i * int(view.get("byteStride", 8 if type == FLOAT else 4)))
+		var u = _number(file, type)
+		values.append(Vector2(u, _number(file, type)))
 	return values
+
+
+# Packed assets have normalised whole numbers.
+func _number(file, type):
+	if type == FLOAT:
+		return file.get_float()
+	var whole = file.get_16()
+	if type == UNSIGNED_SHORT:
+		return whole / 65535.0
+	return max((whole - 65536 if whole > 32767 else whole) / 32767.0, -1.0)
