@@ -19,7 +19,9 @@ func post_import(scene):
 	var first_set = int(info.get("uv_sets", [0, 1])[0])
 	if info.empty():
 		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
-	if first_set != 0 and not _move_sets(scene, document, file, first_set):
+	# Godot stores the sets that it reads itself as half floats, which are too coarse for packed lobes.
+	var is_packed = info.get("layout") == "lobe-packed"
+	if (first_set != 0 or is_packed) and not _move_sets(scene, document, file, first_set):
 		push_error("%s has its lobes in the UV sets %d and %d. They cannot be brought to UV and UV2: the clouds get no shader." %
 				[get_source_file(), first_set, first_set + 1])
 		return scene
