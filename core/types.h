@@ -171,8 +171,8 @@ struct AssetInfo {
   int switch_pixels = 0;            ///< of a level: the most pixels that the longest side may cover where it is drawn; 0: none
   std::string input_hash;           ///< XXH3-128 of the input's bytes, hexadecimal
   std::optional<AssetSeal> seal{};  ///< of the asset; set by encodeGlb
-  /// Of a packed asset: the largest d, in the space of its meshes (core/lobe_packing.h); 0: the four floats are stored as they are. Both are
-  /// set by encodeGlb.
+  /// Of a packed asset: the largest d, in the space of its meshes (core/lobe_packing.h); 0: the four floats are stored as they are. Both
+  /// are set by encodeGlb.
   float density_max = 0;
   std::optional<PackingCertificate> certificate{};
 };
