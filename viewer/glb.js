@@ -101,9 +101,16 @@ function computedNormals(positions, triangles) {
   return normals;
 }
 
+// The largest d of a packed asset, 0 of another one.
+function densityMaxOf({ layout, density_max }) {
+  if (layout !== 'lobe-packed') return 0;
+  if (!(density_max > 0)) throw new Error('The GLB cannot be lit: it is packed, and its density_max is not above 0. Bake it again.');
+  return density_max;
+}
+
 // The numbers of asset.extras.cloudbake that the page uses. Shaders have 32 bits for each.
-function constantsOf({ layout, exponent = 3, bias = 0, extinction = 0, harmonic_order = 0, uv_sets, density_max: given_density = 0 }) {
-  const density_max = layout === 'lobe-packed' ? given_density : 0;
+function constantsOf(info) {
+  const { exponent = 3, bias = 0, extinction = 0, harmonic_order = 0, uv_sets } = info, density_max = densityMaxOf(info);
   const refuse = (key, value, wanted) => {
     throw new Error(`The GLB cannot be lit: asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a ${wanted}. Bake it again.`);
   };
@@ -111,7 +118,6 @@ function constantsOf({ layout, exponent = 3, bias = 0, extinction = 0, harmonic_
     if (typeof value !== 'number' || !Number.isFinite(Math.fround(value))) refuse(key, value, 'finite number in 32 bits');
   for (const [key, value] of Object.entries({ harmonic_order, 'uv_sets[0]': uv_sets?.[0], 'uv_sets[1]': uv_sets?.[1] }))
     if (!Number.isInteger(value) || value < 0 || value > 7) refuse(key, value, 'whole number from 0 to 7');
-  if (layout === 'lobe-packed' && !(density_max > 0)) refuse('density_max', given_density, 'number above 0');
   return { exponent, bias, extinction, harmonic_order, uv_sets, density_max };
 }
 
