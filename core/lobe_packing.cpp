@@ -2,6 +2,9 @@
 // like one vector, so M restores both exactly. A thickness of zero gives no vector; then the direction alone is mapped.
 #include "core/lobe_packing.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace cloudbake {
 
 Lobe mappedLobe(const Lobe& lobe, const Affine& map) {
@@ -18,6 +21,31 @@ LobeUvs packLobe(const Lobe& lobe, const Affine& from_scene) {
 
 Lobe unpackLobe(const LobeUvs& uvs, const Affine& to_scene) {
   return mappedLobe({{uvs.first.x, uvs.first.y, uvs.second.x}, uvs.second.y}, to_scene);
+}
+
+// Octahedral directions: Meyer and others, "On Floating-Point Normal Vectors", EGSR 2010. The octahedron's lower half is folded out around
+// the square |u| + |v| ≤ 1.
+PackedLobe quantisedLobe(const LobeUvs& uvs, float density_max) {
+  const double x = uvs.first.x, y = uvs.first.y, z = uvs.second.x, sum = std::fabs(x) + std::fabs(y) + std::fabs(z);
+  double u = sum > 0 ? x / sum : 0, v = sum > 0 ? y / sum : 0;
+  if (z < 0) {
+    u = std::copysign(1 - std::fabs(y / sum), x);
+    v = std::copysign(1 - std::fabs(x / sum), y);
+  }
+  const double share = std::clamp(double(uvs.second.y) / double(density_max), 0.0, 1.0);
+  const auto step = [](double of_one) { return int16_t(std::lround(kDirectionSteps * std::clamp(of_one, -1.0, 1.0))); };
+  return {step(u), step(v), uint16_t(std::lround(kDensitySteps * std::sqrt(share)))};
+}
+
+std::array<double, 3> octahedronPoint(double u, double v) {
+  const double z = 1 - std::fabs(u) - std::fabs(v), fold = std::max(-z, 0.0);
+  return {u - std::copysign(fold, u), v - std::copysign(fold, v), z};
+}
+
+LobeUvs dequantisedLobe(const LobeUvs& stored, float density_max) {
+  const auto [x, y, z] = octahedronPoint(stored.first.x, stored.first.y);
+  const double size = std::sqrt(x * x + y * y + z * z), root = stored.second.y;
+  return {{float(x / size), float(y / size)}, {float(z / size), float(double(density_max) * root * root)}};
 }
 
 }  // namespace cloudbake

@@ -1,6 +1,9 @@
 // How two UV sets store the four floats of a vertex (docs/asset_format.md).
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "core/types.h"
 
 namespace cloudbake {
@@ -20,5 +23,24 @@ LobeUvs packLobe(const Lobe& lobe, const Affine& from_scene);
 
 /// The inverse: v = M·(o'·d'), o = v/‖v‖, d = ‖v‖. `to_scene` is the node's transform.
 Lobe unpackLobe(const LobeUvs& uvs, const Affine& to_scene);
+
+// --- Packed assets: eight bytes of lobe ---
+
+/// The integers of a lobe: o on the octahedron |x| + |y| + |z| = 1, unfolded to the square, and the root of d / d_max. As normalised
+/// integers of glTF they stand for u / 32767, v / 32767 and root / 65535. Two bytes are left for the first number of the second set.
+struct PackedLobe {
+  int16_t u = 0, v = 0;
+  uint16_t root = 0;
+};
+inline constexpr double kDirectionSteps = 32767, kDensitySteps = 65535;
+
+/// The nearest integers. `density_max` is at least the lobe's d, and above 0.
+PackedLobe quantisedLobe(const LobeUvs& uvs, float density_max);
+
+/// The point of the octahedron that the square's point (u, v) is folded to; o is this vector, normalised. −1 ≤ u, v ≤ 1.
+std::array<double, 3> octahedronPoint(double u, double v);
+
+/// (o, d) of the numbers that a packed asset stores: first = (u, v), second = (anything, root).
+LobeUvs dequantisedLobe(const LobeUvs& stored, float density_max);
 
 }  // namespace cloudbake

@@ -64,6 +64,7 @@ std::string hashOfConstants(const AssetInfo& info) {
     for (const float value : values) key = hashedFloat(key, value);
   };
   add({info.shape.exponent, info.shape.bias, info.extinction, info.extinction_low, info.extinction_high, info.ray_length});
+  if (info.density_max > 0) add({info.density_max});
   if (const auto& arc = info.sun_arc)
     add({arc->elevation_low_degrees, arc->elevation_high_degrees, arc->azimuth_low_degrees, arc->azimuth_high_degrees});
   if (const auto& volume = info.volume) {

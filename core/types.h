@@ -140,9 +140,18 @@ struct AssetSeal {
 
 struct Impostor;  // core/impostor.h
 
+/// The layouts of assets (docs/asset_format.md). A reader that does not know one refuses it.
+inline constexpr const char *kLayoutName = "lobe-uv", *kPackedLayoutName = "lobe-packed";
+
+/// How far a packed asset may be from the one that it was made of (core/certificate.h).
+struct PackingCertificate {
+  float transmittance = 0;                        ///< the most that T changes at a vertex, under any light
+  float extinction_low = 0, extinction_high = 0;  ///< for any σ in this range, per world unit
+};
+
 /// The contents of `asset.extras.cloudbake`: information for people and tools. Decoding the lobes does not need it.
 struct AssetInfo {
-  std::string layout = "lobe-uv";                 ///< name of the layout (docs/asset_format.md)
+  std::string layout = kLayoutName;               ///< name of the layout (docs/asset_format.md)
   int version = 1;                                ///< version of the layout
   int first_uv_set = 0;                           ///< n: the UV sets are n and n+1
   std::string lobe = "mean";                      ///< how the lobe was made: "mean" or "fit"
@@ -164,6 +173,10 @@ struct AssetInfo {
   int switch_pixels = 0;            ///< of a level: the most pixels that the longest side may cover where it is drawn; 0: none
   std::string input_hash;           ///< XXH3-128 of the input's bytes, hexadecimal
   std::optional<AssetSeal> seal{};  ///< of the asset; set by encodeGlb
+  /// Of a packed asset: the largest d, in the space of its meshes (core/lobe_packing.h); 0: the four floats are stored as they are. Both
+  /// are set by encodeGlb.
+  float density_max = 0;
+  std::optional<PackingCertificate> certificate{};
 };
 
 /// A mesh with its lobes in scene space. The previewer and the error figures work on it.

@@ -46,6 +46,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kLightIgnored: return "light-ignored";
     case WarningKind::kCurveIgnored: return "curve-ignored";
     case WarningKind::kMissingColor: return "missing-color";
+    case WarningKind::kPartNotPacked: return "part-not-packed";
     case WarningKind::kPartNotRefined: return "part-not-refined";
     case WarningKind::kRefineTarget: return "refine-target";
     case WarningKind::kHierarchyChanged: return "hierarchy-changed";

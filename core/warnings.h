@@ -51,6 +51,7 @@ enum class WarningKind {
   kLightIgnored,        ///< a light
   kCurveIgnored,        ///< a curve or a free-form surface
   kMissingColor,        ///< vertices without a colour in a file with colours; they became white
+  kPartNotPacked,       ///< a part of a packed asset whose positions and normals stay floats: joints or morph targets move it
   kPartNotRefined,      ///< a part that --refine leaves as it is: it is skinned, morphed, or has values that cannot be blended
   kRefineTarget,        ///< --refine did not reach its target
   kHierarchyChanged,    ///< a node became a root: glTF cannot store its sheared transform

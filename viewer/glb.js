@@ -26,7 +26,7 @@ export class GlbReader {
     this.binary = binary + 8;
     this.info = this.json.asset?.extras?.cloudbake;
     if (!this.info) throw new Error('This GLB has no lobes: bake it with `cloudbake bake` first.');
-    if (this.info.layout !== 'lobe-uv' || this.info.version !== 1)
+    if (!['lobe-uv', 'lobe-packed'].includes(this.info.layout) || this.info.version !== 1)
       throw new Error('The GLB has lobes of another version of cloudbake: bake it again.');
     const known = ['KHR_mesh_quantization', 'KHR_texture_transform'];
     const unread = (this.json.extensionsRequired ?? []).filter(name => !known.includes(name));
@@ -101,16 +101,41 @@ function computedNormals(positions, triangles) {
   return normals;
 }
 
+// The largest d of a packed asset, 0 of another one.
+function densityMaxOf({ layout, density_max }) {
+  if (layout !== 'lobe-packed') return 0;
+  if (!(density_max > 0)) throw new Error('The GLB cannot be lit: it is packed, and its density_max is not above 0. Bake it again.');
+  return density_max;
+}
+
 // The numbers of asset.extras.cloudbake that the page uses. Shaders have 32 bits for each.
-function constantsOf({ exponent = 3, bias = 0, extinction = 0, harmonic_order = 0, uv_sets }) {
+function constantsOf(info) {
+  const { exponent = 3, bias = 0, extinction = 0, harmonic_order = 0, uv_sets } = info, density_max = densityMaxOf(info);
   const refuse = (key, value, wanted) => {
     throw new Error(`The GLB cannot be lit: asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a ${wanted}. Bake it again.`);
   };
-  for (const [key, value] of Object.entries({ exponent, bias, extinction }))
+  for (const [key, value] of Object.entries({ exponent, bias, extinction, density_max }))
     if (typeof value !== 'number' || !Number.isFinite(Math.fround(value))) refuse(key, value, 'finite number in 32 bits');
   for (const [key, value] of Object.entries({ harmonic_order, 'uv_sets[0]': uv_sets?.[0], 'uv_sets[1]': uv_sets?.[1] }))
     if (!Number.isInteger(value) || value < 0 || value > 7) refuse(key, value, 'whole number from 0 to 7');
-  return { exponent, bias, extinction, harmonic_order, uv_sets };
+  return { exponent, bias, extinction, harmonic_order, uv_sets, density_max };
+}
+
+// (o, d) of a packed lobe: o on the unfolded octahedron, and the root of d / density_max.
+function unpackedLobe(u, v, root, density_max) {
+  const height = 1 - Math.abs(u) - Math.abs(v), fold = Math.max(-height, 0);
+  const o = [u - (u < 0 ? -fold : fold), v - (v < 0 ? -fold : fold), height], size = Math.hypot(...o);
+  return [...o.map(x => x / size), density_max * root * root];
+}
+
+// The triangles of a strip; those with two equal corners only join it.
+function trianglesOfStrip(strip) {
+  const triangles = [];
+  for (let i = 0; i + 2 < strip.length; ++i) {
+    const [a, b, c] = i % 2 ? [strip[i], strip[i + 2], strip[i + 1]] : strip.subarray(i, i + 3);
+    if (a !== b && b !== c && c !== a) triangles.push(a, b, c);
+  }
+  return Uint32Array.from(triangles);
 }
 
 // How the volume shows light that the lobes were fitted to, or the volume of single scattering: VolumeLight of core/types.h.
@@ -120,8 +145,9 @@ function volumeOf({ view_extinction = 1, phase: asymmetry = 0, octaves = 0, octa
 
 // The meshes of a file, in the space of its scene, one after the other.
 class MeshCollector {
-  constructor(reader, { uv_sets, harmonic_order }, materials) {
+  constructor(reader, { uv_sets, harmonic_order, density_max }, materials) {
     this.reader = reader;
+    this.densityMax = density_max;
     this.materials = materials;
     this.sets = uv_sets.map(n => `TEXCOORD_${n}`);
     this.harmonicsPerVertex = harmonic_order > 0 ? Math.ceil((harmonic_order + 1) ** 2 / 4) * 4 : 0;
@@ -133,11 +159,12 @@ class MeshCollector {
 
   add(primitive, matrix) {
     const { attributes, indices, mode = 4 } = primitive;
-    if (mode !== 4) throw new Error('The GLB has primitives that are not lists of triangles: open it with `cloudbake view`.');
+    if (mode !== 4 && mode !== 5) throw new Error('The GLB has primitives that are not triangles: open it with `cloudbake view`.');
     const missing = ['POSITION', ...this.sets, ...this.coefficients].find(key => attributes[key] === undefined);
     if (missing) throw new Error(`A mesh of the GLB has no ${missing}: an optimiser dropped it, or it was never baked.`);
     const { reader } = this, positions = reader.read(attributes.POSITION, 'positions'), vertices = positions.length / 3;
-    const triangles = indices === undefined ? Uint32Array.from({ length: vertices }, (_, i) => i) : reader.read(indices, 'triangles');
+    const corners = indices === undefined ? Uint32Array.from({ length: vertices }, (_, i) => i) : reader.read(indices, 'triangles');
+    const triangles = mode === 5 ? trianglesOfStrip(corners) : corners;
     const normals = attributes.NORMAL === undefined ? computedNormals(positions, triangles) : reader.read(attributes.NORMAL, 'normals');
     const columns = columnsOf(matrix), mirrored = dot(cross(columns[0], columns[1]), columns[2]) < 0 ? -1 : 1, first = this.vertices;
     this.addHarmonics(attributes, vertices);
@@ -156,8 +183,10 @@ class MeshCollector {
       all.positions.push(...add(applyLinear(matrix, positions.subarray(3 * v, 3 * v + 3)), matrix.slice(12, 15)));
       const normal = applyLinear(cofactors, normals.subarray(3 * v, 3 * v + 3)), size = mirrored * Math.hypot(...normal);
       all.normals.push(...normal.map(x => x / size || 0));
-      const direction = applyLinear(matrix, [one[2 * v], one[2 * v + 1], two[2 * v]]), stretch = Math.hypot(...direction);
-      all.lobes.push(...direction.map(x => x / stretch || 0), two[2 * v + 1] * stretch);
+      const stored = [one[2 * v], one[2 * v + 1], two[2 * v], two[2 * v + 1]];
+      const lobe = this.densityMax > 0 ? unpackedLobe(stored[0], stored[1], stored[3], this.densityMax) : stored;
+      const direction = applyLinear(matrix, lobe.slice(0, 3)), stretch = Math.hypot(...direction);
+      all.lobes.push(...direction.map(x => x / stretch || 0), lobe[3] * stretch);
     }
   }
 

@@ -11,6 +11,7 @@
 #include "bake/truth/reference.h"
 #include "bake/truth/surface_error.h"
 #include "core/error.h"
+#include "io/gltf/asset/pack.h"
 #include "io/gltf/unpack/unpack.h"
 #include "io/sculpt/child_reader.h"
 #include "io/sculpt/delaunay_polygon.h"
@@ -54,6 +55,10 @@ SurfaceMesh remeshed(const SurfaceMesh&, double) { refuse(kMesh); }
 RepairSummary repairMesh(SurfaceMesh&, std::span<const uint32_t>, const RepairSettings&, std::vector<bool>&, Warnings&) { refuse(kMesh); }
 Defect findSelfIntersections(const SurfaceMesh&) { refuse("has --inspect"); }
 void reduceVertices(SurfaceMesh&, size_t, Warnings&) { refuse(kMesh); }
+std::vector<uint32_t> orderedForCodec(std::span<const uint32_t>, size_t, std::vector<uint32_t>&) { refuse("has --pack-as meshopt"); }
+std::string compressedVertices(std::string_view, size_t, size_t) { refuse("has --pack-as meshopt"); }
+std::string filteredNormals(std::span<const float>) { refuse("has --pack-as meshopt"); }
+std::string compressedTriangles(std::span<const uint32_t>, size_t) { refuse("has --pack-as meshopt"); }
 std::unique_ptr<const NearestSurface> nearestSurface(const SurfaceMesh&) { refuse(kMesh); }
 std::vector<LevelAsset> makeLevels(const Cloud&, std::span<const Lobe>, std::span<const float>, const Settings&, BakeReport&, Stopwatch&) {
   refuse("has --lods");

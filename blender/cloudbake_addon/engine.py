@@ -144,6 +144,8 @@ def lobes_of_asset(data, points, warnings):
     if len(primitives) != 1:
         raise ValueError(f"{len(primitives)} primitives")
     attributes, info = primitives[0]["attributes"], glb.asset_info(document)
+    if info["layout"] == glb.PACKED:
+        raise ValueError("a packed asset: leave out --pack, which is for files")
     names = ["POSITION"] + [f"TEXCOORD_{number}" for number in info["uv_sets"]]
     places, first, second = (glb.table(document, binary, attributes[name]) for name in names)
     new = () if numpy.array_equal(places, points) else (places, glb.table(document, binary, primitives[0]["indices"]).reshape(-1, 3))

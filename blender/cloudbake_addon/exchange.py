@@ -36,7 +36,7 @@ def read_asset(path):
     info = glb.asset_info(document)
     if info is None:
         raise BakeError(f"'{path}' is not a baked asset: it has no asset.extras.cloudbake of layout 'lobe-uv' 1")
-    for name in ("exponent", "bias", "extinction"):
+    for name in ("exponent", "bias", "extinction", *(["density_max"] if info["layout"] == glb.PACKED else [])):
         value = info.get(name)
         if not isinstance(value, (int, float)) or not abs(value) <= numpy.finfo(numpy.float32).max:
             raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.{name} is {value!r}, not a finite number in 32 bits: bake "
@@ -68,6 +68,10 @@ def import_asset(context, path, sun):
     clouds = [thing for thing in made if thing.type == "MESH" and nodes.name_maps(thing.data, info["uv_sets"][0])]
     if not clouds:
         raise BakeError(f"no object of '{path}' has the UV maps of the lobes")
+    if info["layout"] == glb.PACKED:
+        for mesh in {thing.data.name: thing.data for thing in clouds}.values():
+            unpack(mesh, info["density_max"])
+        info = {key: value for key, value in info.items() if key not in ("density_max", "certificate", "seal")} | {"layout": "lobe-uv"}
     if facts is not None:
         restore(context, document, facts, made, materials)
     depsgraph = context.evaluated_depsgraph_get()
@@ -80,6 +84,18 @@ def import_asset(context, path, sun):
         for material in nodes.set_up(thing, f"Cloudbake {pathlib.Path(path).stem}", bake.constants_of(info)):
             nodes.follow_sun(material, sun)
     return clouds
+
+
+def unpack(mesh, density_max):
+    """Gives the UV maps of the lobes the four floats that a packed asset stands for. Blender has 1 - v."""
+    layers = [mesh.uv_layers[name].data for name in nodes.MAPS]
+    sets = []
+    for layer in layers:
+        values = numpy.empty(2 * len(layer), numpy.float32)
+        layer.foreach_get("uv", values)
+        sets.append(values.reshape(-1, 2).astype(numpy.float64) * (1, -1) + (0, 1))
+    for layer, values in zip(layers, glb.unpacked_lobes(*sets, density_max)):
+        layer.foreach_set("uv", (values * (1, -1) + (0, 1)).astype(numpy.float32).ravel())
 
 
 def import_file(path):

@@ -4,6 +4,8 @@
 // k, b and sigma of the asset; b and sigma are in its scene's units. Where a whole scene is scaled by c, use b * c and sigma / c.
 const vec2 CLOUDBAKE_SHAPE = vec2(@exponent@, @bias@);
 const float CLOUDBAKE_EXTINCTION = @extinction@;
+// The largest d of a packed asset; 0.0: the asset is not packed.
+const float CLOUDBAKE_DENSITY_MAX = @density_max@;
 // The lobes are in TEXCOORD_@first_set@ and TEXCOORD_@second_set@.
 
 // The light and the fog of a scene file, or those of the previewer: the unit vector to the sun, linear colors, half-Lambert of sun and sky,
@@ -38,7 +40,7 @@ const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 // The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
 // the unit vector to the sun. The sky is above, along `up`.
 vec2 cloudbakeLight(vec2 first, vec2 second, mat3 to_world, vec3 to_sun, vec3 up) {
-  vec4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  vec4 lobe = lobeInWorld(decodeLobe(first, second, 0.0, CLOUDBAKE_DENSITY_MAX), to_world);
   return vec2(lobeTransmittance(lobe, to_sun, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION),
               lobeTransmittance(lobe, up, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION));
 }

@@ -7,7 +7,7 @@ vec3 linearToSrgb(vec3 color) {
 
 void vertex() {
 	mat3 to_world = mat3(WORLD_MATRIX);
-	lit = lightOf(lobeInWorld(unpackLobe(UV, UV2, 0.0), to_world), normalInWorld(NORMAL, to_world), half_lambert, volume_gain);
+	lit = lightOf(lobeInWorld(decodeLobe(UV, UV2, 0.0, density_max), to_world), normalInWorld(NORMAL, to_world), half_lambert, volume_gain);
 }
 
 void fragment() {

@@ -6,6 +6,8 @@ tool
 extends EditorScenePostImport
 
 const FLOAT = 5126
+const SHORT = 5122
+const UNSIGNED_SHORT = 5123
 const GLB = 0x46546C67
 const FLOAT_MAX = 3.4028234e38  # shaders have 32 bits
 
@@ -17,7 +19,9 @@ func post_import(scene):
 	var first_set = int(info.get("uv_sets", [0, 1])[0])
 	if info.empty():
 		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
-	if first_set != 0 and not _move_sets(scene, document, file, first_set):
+	# Godot stores the sets that it reads itself as half floats, which are too coarse for packed lobes.
+	var is_packed = info.get("layout") == "lobe-packed"
+	if (first_set != 0 or is_packed) and not _move_sets(scene, document, file, first_set):
 		push_error("%s has its lobes in the UV sets %d and %d. They cannot be brought to UV and UV2: the clouds get no shader." %
 				[get_source_file(), first_set, first_set + 1])
 		return scene
@@ -48,6 +52,7 @@ func _material(info):
 			push_error("%s: extras.cloudbake.%s is %s, not a number of 32 bits: bake it again." % [get_source_file(), name, info[name]])
 			continue
 		material.set_shader_param(name, info[name])
+	material.set_shader_param("density_max", float(info.get("density_max", 0)))    # of a packed asset
 	material.set_shader_param("of_volume", 1.0 if info.get("fit_to") == "volume" else 0.0)
 	ResourceSaver.save(path, material)
 	material.take_over_path(path)
@@ -116,14 +121,25 @@ func _move_sets_of(mesh, primitives, document, file, first_set):
 
 func _uv_set(document, file, number):
 	var values = PoolVector2Array()
-	if number == null or int(document.accessors[int(number)].componentType) != FLOAT:
+	var type = 0 if number == null else int(document.accessors[int(number)].componentType)
+	if not type in [FLOAT, SHORT, UNSIGNED_SHORT]:
 		return values
 	var accessor = document.accessors[int(number)]
 	var view = document.bufferViews[int(accessor.bufferView)]
 	file.seek(12)
 	var at = 28 + file.get_32() + int(view.get("byteOffset", 0)) + int(accessor.get("byteOffset", 0))
 	for i in int(accessor.count):
-		file.seek(at + i * int(view.get("byteStride", 8)))
-		var u = file.get_float()
-		values.append(Vector2(u, file.get_float()))
+		file.seek(at + i * int(view.get("byteStride", 8 if type == FLOAT else 4)))
+		var u = _number(file, type)
+		values.append(Vector2(u, _number(file, type)))
 	return values
+
+
+# Packed assets have normalised whole numbers.
+func _number(file, type):
+	if type == FLOAT:
+		return file.get_float()
+	var whole = file.get_16()
+	if type == UNSIGNED_SHORT:
+		return whole / 65535.0
+	return max((whole - 65536 if whole > 32767 else whole) / 32767.0, -1.0)

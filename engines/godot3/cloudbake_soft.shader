@@ -4,7 +4,7 @@
 
 void vertex() {
 	mat3 to_world = mat3(WORLD_MATRIX);
-	vec4 lobe = lobeInWorld(unpackLobe(UV, UV2, 0.0), to_world);
+	vec4 lobe = lobeInWorld(decodeLobe(UV, UV2, 0.0, density_max), to_world);
 	vec3 facing = normalInWorld(NORMAL, to_world);
 	lit = lightOf(lobe, facing, half_lambert, volume_gain);
 	lamp_light = lampsAt(lobe, (WORLD_MATRIX * vec4(VERTEX, 1.0)).xyz, facing);

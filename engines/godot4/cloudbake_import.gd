@@ -50,6 +50,7 @@ func _material(info, first_set):
 			continue
 		material.set_shader_parameter(parameter, info[parameter])
 	material.set_shader_parameter("first_set", first_set)
+	material.set_shader_parameter("density_max", float(info.get("density_max", 0)))    # of a packed asset
 	material.set_shader_parameter("of_volume", 1.0 if info.get("fit_to") == "volume" else 0.0)
 	ResourceSaver.save(material, path)
 	material.take_over_path(path)

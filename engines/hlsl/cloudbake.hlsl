@@ -5,6 +5,8 @@
 // k, b and sigma of the asset; b and sigma are in its scene's units. Where a whole scene is scaled by c, use b * c and sigma / c.
 static const float2 CLOUDBAKE_SHAPE = float2(@exponent@, @bias@);
 static const float CLOUDBAKE_EXTINCTION = @extinction@;
+// The largest d of a packed asset; 0.0: the asset is not packed.
+static const float CLOUDBAKE_DENSITY_MAX = @density_max@;
 // The lobes are in TEXCOORD_@first_set@ and TEXCOORD_@second_set@.
 
 // The light and the fog of a scene file, or those of the previewer: the unit vector to the sun, linear colors, half-Lambert of sun and sky,
@@ -33,7 +35,7 @@ static const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 // The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
 // the unit vector to the sun. The sky is above, along `up`.
 float2 cloudbakeLight(float2 first, float2 second, float3x3 to_world, float3 to_sun, float3 up) {
-  float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  float4 lobe = lobeInWorld(decodeLobe(first, second, 0.0, CLOUDBAKE_DENSITY_MAX), to_world);
   return float2(lobeTransmittance(lobe, to_sun, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION),
                 lobeTransmittance(lobe, up, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION));
 }

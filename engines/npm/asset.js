@@ -3,6 +3,7 @@ export const DEFAULTS = {
   exponent: @exponent@,
   bias: @bias@,
   extinction: @extinction@,
+  densityMax: @density_max@,
   uvSets: [@first_set@, @second_set@],
 };
 
@@ -45,6 +46,16 @@ function orderOf({ harmonic_order: order = 0 }) {
   return order;
 }
 
+// The largest d of a packed asset, 0 of another one. A layout of a later version is refused.
+function densityMaxOf({ layout = 'lobe-uv', version = 1, density_max = 0 }) {
+  if (!['lobe-uv', 'lobe-packed'].includes(layout) || version !== 1)
+    throw new Error(`asset.extras.cloudbake has the layout ${layout} ${version}, which this version does not know: bake the asset again`);
+  const value = layout === 'lobe-packed' ? density_max : 0;
+  if (typeof value !== 'number' || !Number.isFinite(Math.fround(value)) || (layout === 'lobe-packed' && !(value > 0)))
+    throw new Error(`asset.extras.cloudbake.density_max is ${JSON.stringify(value)}, not a number above 0: bake the asset again`);
+  return value;
+}
+
 // The same as DEFAULTS from the JSON of a glTF file, and its harmonics, or null if cloudbake did not bake it. Throws if a number cannot be
 // used.
 export function settingsOf(json) {
@@ -55,6 +66,7 @@ export function settingsOf(json) {
     exponent: constantOf(info, 'exponent'),
     bias: constantOf(info, 'bias'),
     extinction,
+    densityMax: densityMaxOf(info),
     uvSets: info.uv_sets ?? DEFAULTS.uvSets,
     ofVolume: info.fit_to === 'volume',
     harmonicOrder: orderOf(info),

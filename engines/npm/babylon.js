@@ -197,6 +197,7 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['ambientSky']} */ ambientSky;
   /** @type {Settings['ambientGround']} */ ambientGround;
   /** @type {Settings['exponent']} */ exponent;
+  /** @type {Settings['densityMax']} */ densityMax;
   /** @type {Settings['bias']} */ bias;
   /** @type {Settings['extinction']} */ extinction;
   /** @type {Settings['halfLambert']} */ halfLambert;
@@ -211,7 +212,7 @@ export class CloudMaterial extends SunlitMaterial {
     super(name, scene, cloudVertex(names), CLOUD_FRAGMENT, {
       attributes: ['position', 'normal', ...names], defines: ['NORMAL'],
       uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color',
-        'ambient_sky', 'ambient_ground', 'shape', 'extinction',
+        'ambient_sky', 'ambient_ground', 'shape', 'extinction', 'density_max',
         'half_lambert', 'volume_gain', 'flipped', 'phase', 'forward', 'painted_range', 'painted_place', 'has_solid',
         ...Object.keys(softValues({}))],
       samplers: ['solid_depth'],
@@ -251,6 +252,7 @@ export class CloudMaterial extends SunlitMaterial {
     this.setColor3('ambient_ground', this.ambientGround);
     this.setVector2('shape', new Vector2(this.exponent, this.bias));
     this.setFloat('extinction', this.extinction);
+    this.setFloat('density_max', this.densityMax);
     this.setFloat('half_lambert', this.painted?.halfLambert ?? this.halfLambert);
     this.setFloat('volume_gain', this.ofVolume ? this.painted?.volumeGain ?? 1 : 1);
     this.setVector3('forward', forward);

@@ -31,6 +31,8 @@ export interface Lobes<Color, Depth, Lamp> {
   bias: number;
   /** σ, per world unit. */
   extinction: number;
+  /** Of a packed asset, whose lobes have 8 bytes: density_max in its extras; 0: four floats. */
+  densityMax: number;
   /** 1: the light of the lobes alone. Less: also how the surface faces the sun. */
   halfLambert: number;
   phase: Phase;

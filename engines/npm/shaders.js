@@ -24,6 +24,7 @@ ${order > 0 ? `${HARMONICS}${harmonicNames(order).map(name => `attribute vec4 ${
 uniform vec3 to_sun;    // of length 1, in the world
 uniform vec2 shape;     // k and b
 uniform float extinction, half_lambert, volume_gain, flipped;
+uniform float density_max;  // of a packed asset, else 0
 
 // The share of a light that comes through the cloud to the vertex.
 float shareOf(vec3 to_light, vec4 lobe, mat3 to_world) {
@@ -75,7 +76,7 @@ varying vec3 cloud_view;
 
 // All of it but cloud_view, from the names of the two UV sets and the GLSL for the normal of the mesh and, in the world, matrix and place.
 export const writeVaryings = (sets, normal, matrix, place) => `
-  vec4 lobe = lobeInWorld(unpackLobe(${sets.join(', ')}, flipped), mat3(${matrix}));
+  vec4 lobe = lobeInWorld(decodeLobe(${sets.join(', ')}, flipped, density_max), mat3(${matrix}));
   vec3 facing = normalInWorld(${normal}, mat3(${matrix}));
   cloud_light = lightOfVertex(lobe, facing, mat3(${matrix}));
   #ifdef SOFT

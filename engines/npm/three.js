@@ -193,6 +193,7 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['ambientSky']} */ ambientSky;
   /** @type {Settings['ambientGround']} */ ambientGround;
   /** @type {Settings['exponent']} */ exponent;
+  /** @type {Settings['densityMax']} */ densityMax;
   /** @type {Settings['bias']} */ bias;
   /** @type {Settings['extinction']} */ extinction;
   /** @type {Settings['halfLambert']} */ halfLambert;
@@ -204,7 +205,7 @@ export class CloudMaterial extends SunlitMaterial {
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, volume_gain: { value: 1 }, flipped: { value: 0 },
-      own_extinction: { value: 1 }, to_mesh: { value: new Matrix3() } };
+      density_max: { value: 0 }, own_extinction: { value: 1 }, to_mesh: { value: new Matrix3() } };
     const soft = Object.fromEntries([...Object.keys(softValues({})), 'solid_depth', 'solid_clip'].map(name => [name, { value: null }]));
     super({ ...colors, ...numbers, ...soft, lamps: { value: [] }, shape: { value: new Vector2() }, phase: { value: new Vector3() },
       painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
@@ -275,6 +276,7 @@ export class CloudMaterial extends SunlitMaterial {
     uniforms.ambient_ground.value.copy(this.ambientGround);
     uniforms.shape.value.set(this.exponent, this.bias);
     uniforms.extinction.value = this.extinction;
+    uniforms.density_max.value = this.densityMax;
     uniforms.own_extinction.value = this.harmonicExtinction;
     uniforms.half_lambert.value = this.painted?.halfLambert ?? this.halfLambert;
     uniforms.volume_gain.value = this.ofVolume ? this.painted?.volumeGain ?? 1 : 1;
@@ -288,7 +290,7 @@ export class CloudMaterial extends SunlitMaterial {
     super.copy(source);
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
-    const own = ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume', 'harmonicOrder',
+    const own = ['exponent', 'bias', 'extinction', 'densityMax', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume', 'harmonicOrder',
       'harmonicExtinction', 'rimFrequency', 'rimScroll', 'insideLight', 'ditherShift', 'depthTexture', 'lamps', ...SOFT_NAMES, 'soft'];
     for (const key of own) this[key] = source[key];
     return this;

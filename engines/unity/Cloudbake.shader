@@ -6,6 +6,7 @@ Shader "Cloudbake/Cloud" {
     _Exponent ("Exponent k", Float) = @exponent@
     _Bias ("Bias b, world units", Float) = @bias@
     _Extinction ("Extinction sigma, per world unit", Float) = @extinction@
+    _DensityMax ("Largest d of a packed asset, else 0", Float) = @density_max@
     [Header(Light)]
     _SunStrength ("Strength of the main light", Float) = 1
     _AmbientSky ("Light of the sky", Color) = (0.32, 0.42, 0.62, 1)

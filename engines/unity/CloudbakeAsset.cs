@@ -8,7 +8,7 @@ public static class CloudbakeAsset
     [Serializable]
     public sealed class Lobes
     {
-        public float exponent, bias, extinction;
+        public float exponent, bias, extinction, density_max;
         public int[] uv_sets;
         public string fit_to;
         public float switch_pixels;  // of a level of detail: the most that the longest side may cover

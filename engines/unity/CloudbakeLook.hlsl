@@ -5,7 +5,7 @@
 #include "CloudbakeLobe.hlsl"
 
 CBUFFER_START(UnityPerMaterial)
-float _Exponent, _Bias, _Extinction, _SunStrength, _HalfLambert, _PhaseShare, _PhaseAsymmetry, _PhaseLimit;
+float _Exponent, _Bias, _Extinction, _DensityMax, _SunStrength, _HalfLambert, _PhaseShare, _PhaseAsymmetry, _PhaseLimit;
 float _RimStart, _RimEnd, _RimFrequency, _SoftDistance, _AlphaToMask;
 float4 _RimScroll, _NearFade, _FarFade, _AmbientSky, _AmbientGround;
 CBUFFER_END
@@ -13,7 +13,7 @@ Texture2D<float4> _CameraDepthTexture;
 
 // The lobe of a vertex in the world.
 float4 worldLobe(float2 first, float2 second) {
-  return lobeInWorld(objectLobe(first, second), (float3x3)UNITY_MATRIX_M);
+  return lobeInWorld(objectLobe(first, second, _DensityMax), (float3x3)UNITY_MATRIX_M);
 }
 
 // The shares of the light of sun and sky.

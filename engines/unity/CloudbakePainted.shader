@@ -6,6 +6,7 @@ Shader "Cloudbake/Painted" {
     _Exponent ("Exponent k", Float) = @exponent@
     _Bias ("Bias b, world units", Float) = @bias@
     _Extinction ("Extinction sigma, per world unit", Float) = @extinction@
+    _DensityMax ("Largest d of a packed asset, else 0", Float) = @density_max@
     [Toggle] _OfVolume ("The lobes were fitted to the volume", Float) = 0
   }
   SubShader {
@@ -22,7 +23,7 @@ Shader "Cloudbake/Painted" {
       #include "CloudbakeLobe.hlsl"
       #include "channels.hlsl"
 
-      float _Exponent, _Bias, _Extinction, _OfVolume;
+      float _Exponent, _Bias, _Extinction, _DensityMax, _OfVolume;
       // Of the chain.
       float4x4 _CloudbakeToScreen;
       float3 _CloudbakeEye, _CloudbakeForward, _CloudbakeToSun;
@@ -45,7 +46,8 @@ Shader "Cloudbake/Painted" {
 
       Varyings vertex(Attributes input) {
         float2 light;
-        CloudbakeLight_float(input.first, input.second, _CloudbakeToSun, _Exponent, _Bias, _Extinction, light.x, light.y);
+        CloudbakePackedLight_float(input.first, input.second, _CloudbakeToSun, _Exponent, _Bias, _Extinction, _DensityMax, light.x,
+                                   light.y);
         light.x = min(light.x * lerp(1.0, _CloudbakeVolumeGain, _OfVolume), 1.0);
         float3 normal = UnityObjectToWorldNormal(input.normal);
         float3 place = mul(unity_ObjectToWorld, float4(input.position.xyz, 1.0)).xyz;

@@ -18,7 +18,6 @@ namespace cloudbake {
 namespace {
 
 constexpr const char* kPlace = "asset.extras.cloudbake";
-constexpr const char* kLayoutName = "lobe-uv";
 constexpr int kLayoutVersion = 1;
 
 }  // namespace
@@ -110,6 +109,10 @@ Json writeInfo(const AssetInfo& info) {
   json["voxel_size"] = shortest(info.voxel_size);
   json["seed"] = info.seed;
   json["input_hash"] = info.input_hash;
+  if (info.density_max > 0) json["density_max"] = shortest(info.density_max);
+  if (const auto& certificate = info.certificate)
+    json["certificate"] = {{"transmittance", shortest(certificate->transmittance)},
+                           {"extinction", {shortest(certificate->extinction_low), shortest(certificate->extinction_high)}}};
   if (info.seal) json["seal"] = writeSeal(*info.seal);
   return json;
 }
@@ -192,14 +195,25 @@ int firstSet(const Json& json) {
   return int(wholeNumber((*sets)[0]));
 }
 
+std::optional<PackingCertificate> readCertificate(const Record& record) {
+  const Json* found = record.find(
+      "certificate", [](const Json& value) { return value.is_object(); }, "an object");
+  if (!found) return std::nullopt;
+  const Record certificate{*found};
+  const auto extinction = certificate.range("extinction");
+  if (!extinction) refuse(".certificate has no range of extinction");
+  return PackingCertificate{certificate.number("transmittance", 1), (*extinction)[0], (*extinction)[1]};
+}
+
 AssetInfo parseInfo(const Json& json) {
   const Record record{json};
   AssetInfo info;
   info.layout = record.text("layout");
   info.version = record.whole("version");
-  if (info.layout != kLayoutName || info.version != kLayoutVersion)
+  const bool is_packed = info.layout == kPackedLayoutName;
+  if ((info.layout != kLayoutName && !is_packed) || info.version != kLayoutVersion)
     refuse(" is of layout '" + info.layout + "' " + std::to_string(info.version) + ", and this program reads '" + kLayoutName + "' " +
-           std::to_string(kLayoutVersion));
+           std::to_string(kLayoutVersion) + " and '" + kPackedLayoutName + "' " + std::to_string(kLayoutVersion));
   info.first_uv_set = firstSet(json);
   info.lobe = record.text("lobe", info.lobe);
   info.shape = {record.number("exponent", 3), record.number("bias", 0)};
@@ -237,6 +251,11 @@ AssetInfo parseInfo(const Json& json) {
       "seed", [](const Json& value) { return value.is_number_integer(); }, "a whole number");
   info.seed = seed ? uint64_t(wholeNumber(*seed)) : 0;
   info.input_hash = record.text("input_hash");
+  if (is_packed) {
+    info.density_max = record.number("density_max", 0);
+    if (!(info.density_max > 0)) refuse(".density_max is not above 0, and packed lobes need it");
+    info.certificate = readCertificate(record);
+  }
   if (const Json* seal = record.find(
           "seal", [](const Json& value) { return value.is_object(); }, "an object"))
     try {

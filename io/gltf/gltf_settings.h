@@ -13,10 +13,19 @@ enum class KeepAliveTexture {
   kOff
 };
 
+/// What triangles of a packed asset are stored as.
+enum class PackForm {
+  kList,    ///< lists of three indices, which every reader takes
+  kStrip,   ///< strips, with a third to a half of the indices
+  kMeshopt  ///< compressed with their vertices: EXT_meshopt_compression
+};
+
 struct GltfSettings {
   std::optional<int> uv_set;  ///< first of the two sets, 0 … 6; unset = the lowest n with n and n+1 free in every primitive
   bool attribute = false;     ///< also write _OCCLUSION (VEC4: o.x, o.y, o.z, d)
   KeepAliveTexture keep_alive_texture = KeepAliveTexture::kAuto;
+  std::optional<int> pack{};  ///< bytes of a lobe: 8; unset: four floats
+  PackForm pack_form = PackForm::kList;
 };
 
 }  // namespace cloudbake

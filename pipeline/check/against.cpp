@@ -23,7 +23,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr double kTolerance = 1e-4;
 constexpr double kAngle_degrees = 0.1, kDensity = 0.001, kHarmonics = 0.001;
 constexpr size_t kDiagnosedVertices = 2000;
 constexpr int kLights = 64;
@@ -170,9 +169,9 @@ std::optional<AssetFault> judge(const CheckReport& report) {
 
 }  // namespace
 
-std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before) {
+std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before, double share) {
   const Box box = boundingBox(before);
-  const double tolerance = kTolerance * std::max(double(box.diagonal()), 1e-30);
+  const double tolerance = share * std::max(double(box.diagonal()), 1e-30);
   const auto cellOf = [&](Vec3 p) {
     return Cell{int64_t(std::floor((double(p.x) - box.low.x) / tolerance)), int64_t(std::floor((double(p.y) - box.low.y) / tolerance)),
                 int64_t(std::floor((double(p.z) - box.low.z) / tolerance))};

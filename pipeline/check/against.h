@@ -9,10 +9,10 @@
 
 namespace cloudbake {
 
-/// For each vertex of `mesh` the vertex of `before` at the same position, or kUnmatched. Positions agree within 1e-4 of the diagonal of
-/// `before`. The nearest vertex is taken, and among equally near ones the one whose normal agrees best.
+/// For each vertex of `mesh` the vertex of `before` at the same position, or kUnmatched. Positions agree within `tolerance` of the
+/// diagonal of `before`. The nearest vertex is taken, and among equally near ones the one whose normal agrees best.
 constexpr uint32_t kUnmatched = UINT32_MAX;
-std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before);
+std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before, double tolerance = 1e-4);
 
 /// Compares an asset with settings.against and judges it.
 CheckReport checkAgainst(const std::filesystem::path& asset, const JudgeSettings& settings, const ReadSettings& read = {},

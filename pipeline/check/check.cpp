@@ -9,6 +9,7 @@
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "pipeline/check/against.h"
+#include "pipeline/check/certificate.h"
 #include "pipeline/check/judge.h"
 #include "pipeline/lobes/parameters.h"
 #include "pipeline/sources/sculpt.h"
@@ -162,8 +163,9 @@ void requireGltf(const std::filesystem::path& file) {
 CheckReport checkAsset(const Settings& settings, const std::function<void(const std::string& stage)>& on_stage) {
   requireGltf(settings.source.input);
   CheckReport report;
+  if (settings.judge.against) requireGltf(*settings.judge.against);
+  if (settings.judge.certificate) return checkCertificate(settings, on_stage);
   if (settings.judge.against) {
-    requireGltf(*settings.judge.against);
     return checkAgainst(settings.source.input, settings.judge, settings.source.read, on_stage);
   }
   checkAlone(settings, report, on_stage);

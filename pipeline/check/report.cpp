@@ -46,6 +46,23 @@ std::string comparisonText(const ComparisonFigures& c) {
          figureLine("materials", "{}; before: {}", c.materials, c.materials_before);
 }
 
+std::string certificateText(const CertificateFigures& c) {
+  return figureLine("certificate", "|difference of T| <= {:.3g} for any light, extinction {:g} to {:g}; recorded {:.3g}; 1/255 is {:.3g}",
+                    double(c.proved.transmittance), double(c.recorded.extinction_low), double(c.recorded.extinction_high),
+                    double(c.recorded.transmittance), 1.0 / 255) +
+         (c.largest ? figureLine("", "{:.3g} is the largest found at {} vertices, {:.0f} % of the bound", *c.largest, c.matched,
+                                 100 * *c.largest / double(c.proved.transmittance))
+                    : "");
+}
+
+Json certificateJson(const CertificateFigures& c) {
+  Json json = {{"transmittance", c.proved.transmittance},
+               {"recorded", c.recorded.transmittance},
+               {"extinction", {c.recorded.extinction_low, c.recorded.extinction_high}}};
+  if (c.largest) json["vertices_matched"] = c.matched, json["largest_difference"] = *c.largest;
+  return json;
+}
+
 Json figuresJson(const CheckFigures& f) {
   Json json = {{"truth", f.bake.truth}, {"vertices", f.bake.vertices}, {"lobe", f.bake.is_fit ? "fit" : "mean"}};
   if (!f.bake.is_fit) addLobeError(json, f.bake.lobe);
@@ -105,6 +122,7 @@ std::string checkText(const CheckReport& report) {
   if (report.figures) text += figuresText(*report.figures, report.run.info);
   if (report.lattice_rms) text += figureLine("lattice", "T differs by {:.4f} rms from a new one", *report.lattice_rms);
   if (report.comparison) text += comparisonText(*report.comparison);
+  if (report.certificate) text += certificateText(*report.certificate);
   for (const AssetFault& fault : report.file.faults) text += figureLine("fault", "{}: {}", fault.cause, fault.what);
   for (const AssetFault& note : report.file.harmless) text += figureLine("note", "{}: {}", note.cause, note.what);
   double total = 0;
@@ -122,6 +140,7 @@ std::string checkJson(const CheckReport& report) {
   json["vertices"] = run.vertices;
   json["triangles"] = run.triangles;
   if (!run.volume_note.empty()) json["volume"] = run.volume_note;
+  if (report.certificate) json["certificate"] = certificateJson(*report.certificate);
   if (report.seal) {
     const SealDifference& seal = *report.seal;
     json["since_the_bake"] = {{"mesh_changed", seal.mesh}, {"constants_changed", seal.constants}, {"shape", seal.shape}};

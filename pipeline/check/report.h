@@ -44,6 +44,13 @@ struct ComparisonFigures {
   std::string sets_before, sets, materials_before, materials;
 };
 
+/// The certificate of a packed asset, and what its integers prove.
+struct CertificateFigures {
+  PackingCertificate recorded, proved;
+  uint64_t matched = 0;           ///< vertices that the other asset has too
+  std::optional<double> largest;  ///< the largest difference of T from it, if there is one
+};
+
 struct CheckReport {
   BakeReport run;  ///< input, metadata, counts, seconds, warnings
   AssetExamination file;
@@ -51,6 +58,7 @@ struct CheckReport {
   std::optional<CheckFigures> figures;
   std::optional<double> lattice_rms;  ///< rms of T of the lattice (--lattice) beside a new one
   std::optional<ComparisonFigures> comparison;
+  std::optional<CertificateFigures> certificate;
   std::optional<Diagnosis> diagnosis;
   std::vector<FigureBound> bounds;    ///< the bounds that were applied
   std::optional<AssetFault> verdict;  ///< why it fails; none: it is sound

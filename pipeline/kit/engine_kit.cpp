@@ -94,6 +94,7 @@ std::map<std::string, std::string> constantsOf(const AssetInfo& info, const Scen
   constants["@exponent@"] = floatText("exponent", info.shape.exponent);
   constants["@bias@"] = floatText("bias", info.shape.bias);
   constants["@extinction@"] = floatText("extinction", scene.light.extinction.value_or(info.extinction));
+  constants["@density_max@"] = floatText("density_max", info.density_max);
   constants["@first_set@"] = std::to_string(info.first_uv_set);
   constants["@second_set@"] = std::to_string(info.first_uv_set + 1);
   constants["@version@"] = CLOUDBAKE_VERSION;

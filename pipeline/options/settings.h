@@ -199,6 +199,7 @@ struct ErrorBounds {
 struct JudgeSettings {
   std::optional<std::filesystem::path> against;    ///< check: the asset before another program
   std::optional<std::filesystem::path> lattice{};  ///< check: a lattice that belongs to the asset
+  bool certificate = false;                        ///< check: only prove the certificate of a packed asset
   ErrorBounds bounds;
   std::optional<size_t> truth_vertices;  ///< unset: 2000; 200 if the truth is marched, in a batch and in a check
   uint64_t memory_limit = kMemoryLimit;

@@ -6,6 +6,25 @@ vec4 unpackLobe(vec2 first, vec2 second, float flipped) {
   return vec4(first.x, mix(first.y, 1.0 - first.y, flipped), second.x, mix(second.y, 1.0 - second.y, flipped));
 }
 
+// A direction from the octahedron that is unfolded to the square: 'place' is -1 to 1 along both axes.
+vec3 octahedralDirection(vec2 place) {
+  float height = 1.0 - abs(place.x) - abs(place.y);
+  float fold = max(-height, 0.0);
+  float x = place.x - (place.x < 0.0 ? -fold : fold);
+  float y = place.y - (place.y < 0.0 ? -fold : fold);
+  return normalize(vec3(x, y, height));
+}
+
+// The lobe of any asset. 'density_max': of asset.extras.cloudbake, if the asset is packed, else 0.0. Of packed ones the sets have o on the
+// octahedron and, as the second number of the second set, the root of d / density_max.
+vec4 decodeLobe(vec2 first, vec2 second, float flipped, float density_max) {
+  vec4 stored = unpackLobe(first, second, flipped);
+  if (density_max > 0.0) {
+    return vec4(octahedralDirection(stored.xy), density_max * stored.w * stored.w);
+  }
+  return stored;
+}
+
 // The lobe in the world: the vector o * d is moved by the model's matrix.
 vec4 lobeInWorld(vec4 lobe, mat3 to_world) {
   vec3 moved = to_world * (lobe.xyz * lobe.w);

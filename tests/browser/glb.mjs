@@ -36,7 +36,8 @@ export function cutHarmonics(glb, order) {
 }
 
 const WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
-const READERS = { 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
+const READERS = { 5120: ['readInt8', 1], 5122: ['readInt16LE', 2], 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2],
+  5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
 
 // The numbers of an accessor.
 export function valuesOf({ json, binary }, index) {

@@ -12,13 +12,18 @@ function glbWith({ json, binary }, more = []) {
 
 // A mesh that nodes show as it is, mirrored, and sheared by a parent that stretches what its child turns.
 export function nodesGlb(bytes) {
-  const asset = chunksOf(bytes), { json } = asset, mesh = json.nodes.find(node => node.mesh !== undefined).mesh;
+  const asset = chunksOf(bytes), { json } = asset, { mesh, translation, scale } = json.nodes.find(node => node.mesh !== undefined);
   json.nodes = [
     { mesh },
     { mesh, translation: [1.3, 0.5, -0.3], rotation: [0, 0.6, 0, 0.8], scale: [-0.8, 1, 0.9] },
     { children: [3], translation: [-1.3, -0.4, 0.3], scale: [1.1, 0.6, 0.8] },
     { mesh, rotation: [0.36, 0.48, 0, 0.8] },
   ];
+  if (json.asset.extras.cloudbake.layout === 'lobe-packed')  // its nodes undo the grid of the positions
+    for (const node of json.nodes.filter(one => one.mesh !== undefined)) {
+      delete node.mesh;
+      node.children = [json.nodes.push({ mesh, translation, scale }) - 1];
+    }
   json.scenes[json.scene ?? 0].nodes = [0, 1, 2];
   return glbWith(asset);
 }

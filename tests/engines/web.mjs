@@ -14,7 +14,8 @@ const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs')
 // The share of 8-bit values that must be those of preview. Graphics cards move the rims of what is opaque by up to 1/512 of a pixel.
 const BAR = 0.999;
 // An asset, whose lobes are in the UV sets 0 and 1 or, of the sculpt, 1 and 2; azimuth and elevation of the camera and of the sun, degrees.
-const VIEWS = [['cloud', '20,-8', '130,28'], ['cloud', '110,25', '60,40'], ['cloud', '250,5', '200,12'], ['sculpt', '335,-30', '20,70']];
+const VIEWS = [['cloud', '20,-8', '130,28'], ['cloud', '110,25', '60,40'], ['cloud', '250,5', '200,12'], ['packed', '20,-8', '130,28'],
+  ['sculpt', '335,-30', '20,70']];
 const inFolder = (program, ...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
 
 // --- The package ---
@@ -390,7 +391,8 @@ const showsCloud = share => share >= 0.02 && share < 0.5;
 run('grow', 'mediocris', '--vertices', '4000', '-o', 'cloud.glb');
 run('bake', join(source, 'data/sculpts/wuson.obj'), '-o', 'sculpt.glb');
 const write = (name, from, change) => writeFileSync(join(folder, name), change(readFileSync(join(folder, from))));
-for (const asset of ['cloud', 'sculpt']) write(`${asset}_nodes.glb`, `${asset}.glb`, nodesGlb);
+run('grow', 'mediocris', '--vertices', '4000', '--pack', '8', '-o', 'packed.glb');
+for (const asset of ['cloud', 'sculpt', 'packed']) write(`${asset}_nodes.glb`, `${asset}.glb`, nodesGlb);
 for (const by of ['node', 'morph', 'turned', 'joint']) write(`moved_${by}.glb`, 'cloud_nodes.glb', bytes => movedGlb(bytes, by));
 write('other.glb', 'sculpt.glb', bytes => otherGlb(bytes, true));
 write('unbaked.glb', 'sculpt.glb', bytes => otherGlb(bytes, false));

@@ -3,7 +3,7 @@
 
 void vertex() {
 	mat3 to_world = mat3(WORLD_MATRIX);
-	vec4 lobe = lobeInWorld(unpackLobe(UV, UV2, 0.0), to_world);
+	vec4 lobe = lobeInWorld(decodeLobe(UV, UV2, 0.0, density_max), to_world);
 	lit = lightOf(lobe, normalInWorld(NORMAL, to_world), painted_half_lambert, painted_volume_gain);
 }
 

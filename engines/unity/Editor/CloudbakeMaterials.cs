@@ -54,6 +54,7 @@ public static class CloudbakeMaterials
         material.SetFloat("_Exponent", lobes.exponent);
         material.SetFloat("_Bias", lobes.bias);
         material.SetFloat("_Extinction", lobes.extinction);
+        material.SetFloat("_DensityMax", lobes.density_max);
         if (material.HasProperty("_OfVolume")) material.SetFloat("_OfVolume", lobes.fit_to == "volume" ? 1 : 0);
         AssetDatabase.CreateAsset(material, AssetDatabase.GenerateUniqueAssetPath(Path.ChangeExtension(path, null) + "_cloud.mat"));
         return material;

@@ -66,23 +66,12 @@ std::vector<LobeUvs> readOcclusion(const LoadedGltf& loaded, size_t part_index) 
 }
 
 // The lobes of one part, converted back to scene space.
-void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std::vector<Lobe>& lobes) {
+void decodePart(const LoadedGltf& loaded, size_t part_index, const AssetInfo& info, std::vector<Lobe>& lobes) {
   const fs::path& file = loaded.document->file;
   const SculptPart& part = loaded.sculpt.parts[part_index];
-  std::vector<Vec2> uvs[2];
-  for (int i = 0; i < 2; ++i) {
-    const std::string name = uvSetName(first_set + i);
-    std::optional<StoredUvSet> stored = readUvSet(loaded, part_index, first_set + i);
-    if (!stored)
-      throw InputError(file.string(),
-                       "'" + part.name + "' has no " + name + ": an optimiser dropped it, or it was never baked; run `cloudbake bake`");
-    if (!stored->isFloat())
-      throw InputError(file.string(),
-                       name + " of '" + part.name + "' is quantised; optimise without it (gltfpack -noq), or run `cloudbake bake` last");
-    uvs[i] = std::move(stored->values);
-  }
+  const std::vector<LobeUvs> stored = storedNumbers(loaded, part_index, info);
   for (size_t v = 0; v < part.positions.size(); ++v) {
-    const Lobe lobe = unpackLobe({uvs[0][v], uvs[1][v]}, part.toScene(v));
+    const Lobe lobe = unpackLobe(info.density_max > 0 ? dequantisedLobe(stored[v], info.density_max) : stored[v], part.toScene(v));
     if (!isFinite(lobe.direction) || !std::isfinite(lobe.thickness))
       throw InputError(file.string(),
                        "the lobe of vertex " + std::to_string(v) + " of '" + part.name + "' is not finite; run `cloudbake bake`");
@@ -160,6 +149,32 @@ std::vector<std::string> materialNames(const Json& json) {
 
 }  // namespace
 
+std::vector<LobeUvs> storedNumbers(const LoadedGltf& loaded, size_t part_index, const AssetInfo& info) {
+  const fs::path& file = loaded.document->file;
+  const SculptPart& part = loaded.sculpt.parts[part_index];
+  std::vector<Vec2> uvs[2];
+  for (int i = 0; i < 2; ++i) {
+    const std::string name = uvSetName(info.first_uv_set + i);
+    std::optional<StoredUvSet> stored = readUvSet(loaded, part_index, info.first_uv_set + i);
+    if (!stored)
+      throw InputError(file.string(),
+                       "'" + part.name + "' has no " + name + ": an optimiser dropped it, or it was never baked; run `cloudbake bake`");
+    if (info.density_max > 0 ? !stored->isPacked() : !stored->isFloat())
+      throw InputError(file.string(),
+                       name + " of '" + part.name + "' is quantised; optimise without it (gltfpack -noq), or run `cloudbake bake` last");
+    uvs[i] = std::move(stored->values);
+  }
+  std::vector<LobeUvs> numbers;
+  for (size_t v = 0; v < part.positions.size(); ++v) numbers.push_back({uvs[0][v], uvs[1][v]});
+  return numbers;
+}
+
+std::vector<float> storedHarmonics(const LoadedGltf& loaded, size_t part_index, int order) {
+  std::vector<float> harmonics;
+  if (order > 0) decodeHarmonics(loaded, part_index, order, harmonics);
+  return harmonics;
+}
+
 BakedMesh decodeLoaded(const LoadedGltf& loaded) {
   const fs::path& file = loaded.document->file;
   BakedMesh baked;
@@ -167,7 +182,7 @@ BakedMesh decodeLoaded(const LoadedGltf& loaded) {
   baked.surface = surfaceInScene(loaded.sculpt);
   checkPositions(file, baked.surface);
   for (size_t i = 0; i < loaded.sculpt.parts.size(); ++i) {
-    decodePart(loaded, i, baked.info.first_uv_set, baked.lobes);
+    decodePart(loaded, i, baked.info, baked.lobes);
     if (baked.info.harmonic_order > 0) decodeHarmonics(loaded, i, baked.info.harmonic_order, baked.harmonics);
   }
   return baked;

@@ -23,6 +23,13 @@ struct LoadedGltf;
 /// The same of a glTF that was loaded. Only for io/gltf/asset.
 BakedMesh decodeLoaded(const LoadedGltf& loaded);
 
+/// The numbers in the two UV sets of a part, #V; of a packed asset those that dequantisedLobe takes. Throws InputError if a set is missing,
+/// or of a type that `info`'s layout does not have. Only for io/gltf/asset.
+std::vector<LobeUvs> storedNumbers(const LoadedGltf& loaded, size_t part, const AssetInfo& info);
+
+/// The coefficients of a part, #V × (order + 1)²; none for order 0. Only for io/gltf/asset.
+std::vector<float> storedHarmonics(const LoadedGltf& loaded, size_t part, int order);
+
 /// Whether a .gltf or .glb is a baked asset, as far as its metadata shows; false for a damaged file.
 bool isBakedAsset(const std::filesystem::path& file, std::string_view bytes);
 
@@ -32,6 +39,8 @@ struct StoredUvSet {
   std::vector<Vec2> values;
   std::optional<std::pair<Vec2, Vec2>> transform;  ///< offset and scale in the KHR_texture_transform of a texture that uses the set
   bool isFloat() const { return type == "float"; }
+  /// Whether a packed asset may have it.
+  bool isPacked() const { return isFloat() || type == "normalised 16-bit integer"; }
 };
 
 /// A glTF as other tools left it, to find out what happened to its lobes.

@@ -30,7 +30,9 @@ Vec2 undo(Vec2 uv, const std::optional<std::pair<Vec2, Vec2>>& transform) {
   return {offset.x + scale.x * uv.x, offset.y + scale.y * uv.y};
 }
 
-// The numbers of a pair of sets, for all parts.
+float densityMax(const StoredAsset& asset) { return asset.info ? asset.info->density_max : 0; }
+
+// The numbers of a pair of sets, for all parts; those of a packed asset are decoded.
 std::vector<LobeUvs> readPair(const StoredAsset& asset, int first, bool with_transform) {
   std::vector<LobeUvs> all;
   for (const auto& sets : asset.sets) {
@@ -39,6 +41,8 @@ std::vector<LobeUvs> readPair(const StoredAsset& asset, int first, bool with_tra
       all.push_back(with_transform ? LobeUvs{undo(a.values[v], a.transform), undo(b.values[v], b.transform)}
                                    : LobeUvs{a.values[v], b.values[v]});
   }
+  if (densityMax(asset) > 0)
+    for (LobeUvs& one : all) one = dequantisedLobe(one, densityMax(asset));
   return all;
 }
 
@@ -63,9 +67,18 @@ double unitShare(const std::vector<LobeUvs>& uvs, double tolerance) {
   return uvs.empty() ? 0 : double(std::count_if(uvs.begin(), uvs.end(), is_unit)) / double(uvs.size());
 }
 
+// A type of the pair that the layout does not have; empty if there is none.
+std::string typeOf(const StoredAsset& asset, int first) {
+  for (const auto& sets : asset.sets)
+    for (const int set : {first, first + 1})
+      if (densityMax(asset) > 0 ? !sets.at(set).isPacked() : !sets.at(set).isFloat()) return sets.at(set).type;
+  return "";
+}
+
 // Whether a pair contains lobes, possibly with V flipped or under a texture's transform.
 bool looksLikeLobes(const StoredAsset& asset, int first) {
   if (!haveSets(asset, first)) return false;
+  if (densityMax(asset) > 0) return typeOf(asset, first).empty();  // any numbers are lobes
   for (const bool with_transform : {false, true}) {
     std::vector<LobeUvs> uvs = readPair(asset, first, with_transform);
     if (2 * countOf(uvs, [](const LobeUvs& o) { return norm(o) == 0; }) > uvs.size())
@@ -84,13 +97,6 @@ int findLobes(const StoredAsset& asset) {
   for (int first = 0; first < 7; ++first)
     if (looksLikeLobes(asset, first)) return first;
   return named >= 0 && haveSets(asset, named) ? named : -1;
-}
-
-std::string typeOf(const StoredAsset& asset, int first) {
-  for (const auto& sets : asset.sets)
-    for (const int set : {first, first + 1})
-      if (!sets.at(set).isFloat()) return sets.at(set).type;
-  return "";
 }
 
 // Whether all float32 numbers are also representable as half floats: the 13 last bits of the mantissa are 0.

@@ -21,6 +21,7 @@
 #include "core/text/utf8.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
+#include "io/gltf/asset/pack.h"
 #include "io/gltf/asset/sculpt_document.h"
 #include "io/gltf/document.h"
 #include "io/gltf/keep_alive.h"
@@ -444,10 +445,11 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
 }
 
 // Writes generator and metadata. The source's own generator is kept in the metadata.
-void writeAsset(const AssetInfo& info, int set, const SealMaker& seal, Json& json) {
+AssetInfo writeAsset(const AssetInfo& info, int set, const SealMaker& seal, Json& json) {
   Json& asset = json["asset"];
   AssetInfo resolved = info;
   resolved.first_uv_set = set;
+  resolved.layout = kLayoutName, resolved.density_max = 0, resolved.certificate.reset();
   if (const AssetSeal finished = seal.finished(info); isFinite(finished)) resolved.seal = finished;
   Json metadata = writeInfo(resolved);
   const std::string generator = asset.value("generator", "");
@@ -459,6 +461,7 @@ void writeAsset(const AssetInfo& info, int set, const SealMaker& seal, Json& jso
     if (earlier.is_object() && earlier.contains("source_generator")) metadata["source_generator"] = earlier["source_generator"];
   }
   asset["extras"]["cloudbake"] = std::move(metadata);
+  return resolved;
 }
 
 void checkShapes(const Sculpt& sculpt, const Baked& baked) {
@@ -501,11 +504,15 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
       extendDocument(sculpt, baked, set, settings, out, warnings);
     else
       buildDocument(sculpt, baked, set, settings, out, warnings);
-    writeAsset(info, set, out.seal, out.json);
+    const AssetInfo resolved = writeAsset(info, set, out.seal, out.json);
     Json& buffers = arrayOf(out.json, "buffers");
     if (buffers.empty()) buffers.push_back(Json::object());
     buffers[0]["byteLength"] = out.size;
-    return joinGlb(file, out.json.dump(), out.pieces);
+    std::string glb = joinGlb(file, out.json.dump(), out.pieces);
+    if (!settings.pack) return glb;
+    std::optional<size_t> kept_views;
+    if (sculpt.gltf) kept_views = sculpt.gltf->json.value("bufferViews", Json::array()).size();
+    return packGlb(file, glb, resolved, settings.pack_form, kept_views, warnings);
   } catch (const Json::exception& error) {
     throw InputError(file, std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
   }

@@ -131,6 +131,30 @@ Numbers removeAttributes(Json& json, const std::vector<std::string>& names) {
 
 // --- Bytes ---
 
+// Clears the lobes of packed vertices, which share their bytes with positions: what is left must not depend on the bake.
+void clearPackedLobes(GltfDocument& document, int first_set) {
+  Json& json = document.json;
+  const auto clear = [&](size_t index, size_t from) {
+    const Json& accessor = json.at("accessors").at(index);
+    if (wholeNumber(accessor.at("componentType")) == kFloat || !accessor.contains("bufferView")) return;
+    const Json& view = json.at("bufferViews").at(size_t(wholeNumber(accessor["bufferView"])));
+    const auto buffer = size_t(wholeNumber(view.at("buffer"))), count = size_t(wholeNumber(accessor.at("count"))),
+               begin = size_t(wholeNumber(view, "byteOffset", 0)) + size_t(wholeNumber(accessor, "byteOffset", 0)),
+               stride = size_t(wholeNumber(view, "byteStride", 4));
+    if (buffer >= document.buffers.size()) return;
+    std::vector<unsigned char>& bytes = document.buffers[buffer];
+    for (size_t at = begin + from; at + 4 - from <= bytes.size() && at < begin + count * stride; at += stride)
+      std::fill_n(bytes.begin() + std::ptrdiff_t(at), 4 - from, static_cast<unsigned char>(0));
+  };
+  for (const Json& mesh : json.at("meshes"))
+    for (const Json& primitive : mesh.at("primitives")) {
+      const Json& attributes = primitive.at("attributes");
+      if (!attributes.contains(uvSetName(first_set)) || !attributes.contains(uvSetName(first_set + 1))) continue;
+      clear(size_t(wholeNumber(attributes[uvSetName(first_set)])), 0);
+      clear(size_t(wholeNumber(attributes[uvSetName(first_set + 1)])), 2);  // its first number is a coordinate
+    }
+}
+
 void collectViews(const Json& node, Numbers& views) {
   if (!node.is_structured()) return;
   for (auto item = node.begin(); item != node.end(); ++item)
@@ -216,6 +240,7 @@ void removeEarlierBake(GltfDocument& document) {
     document.earlier_set = info->first_uv_set;
     names.insert(names.end(), {uvSetName(info->first_uv_set), uvSetName(info->first_uv_set + 1)});
   }
+  if (info->density_max > 0 && document.earlier_set >= 0) clearPackedLobes(document, document.earlier_set);
   Numbers accessors = removeAttributes(json, names);
   for (const size_t used : accessorsInUse(json)) accessors.erase(used);
   for (const size_t accessor : accessors) json.at("accessors").at(accessor) = {{"componentType", kFloat}, {"count", 1}, {"type", "SCALAR"}};
