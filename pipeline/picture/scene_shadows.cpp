@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -70,7 +71,54 @@ std::vector<size_t> castersOf(const SceneFile& scene, std::span<const Instance> 
   return casters;
 }
 
+// Shadows that are made side by side.
+template <typename Make>
+std::vector<CloudShadow> shadowsOf(size_t count, const Make& make) {
+  std::vector<std::optional<CloudShadow>> made(count);
+  parallelFor(count, [&](size_t k) { made[k].emplace(make(k)); });
+  std::vector<CloudShadow> shadows;
+  shadows.reserve(count);
+  for (std::optional<CloudShadow>& shadow : made) shadows.push_back(std::move(*shadow)), shadow.reset();
+  return shadows;
+}
+
 }  // namespace
+
+std::optional<SceneShade> shadeOf(std::span<const Instance> instances, const LightSettings& light, const ShadowSettings& shadows,
+                                  Vec3 to_light, const ShadeGridSettings& settings) {
+  SceneShade shade;
+  std::map<const ShadowCaster*, ShadowCaster> coarse;
+  std::vector<size_t> casting;
+  ShadeGridSettings with = settings;
+  Box box;
+  double sides = 0;
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const Instance& instance = instances[i];
+    shade.number.push_back(casting.size());
+    if (!instance.caster) continue;
+    if (!coarse.contains(instance.caster)) coarse[instance.caster] = coarserCaster(*instance.caster, kShadeCoarser);
+    if (casting.empty() && instance.scattered) with.wind = instance.scattered->wind;
+    casting.push_back(i);
+    const Box drawn = instance.scattered ? instance.scattered->field : placedBox(instance);
+    const float side = instance.scattered ? instance.scattered->longest_side : drawn.longestSide();
+    // A field of fractions reaches a coarse cell beyond its mesh.
+    const float more = side * float(2 * kShadeCoarser) / kCasterVoxels;
+    sides += double(side);
+    for (int c = 0; c < 8 && !drawn.empty(); ++c) {
+      const Vec3 corner = drawn.corner(c), out{corner.x > drawn.center().x ? more : -more, corner.y > drawn.center().y ? more : -more,
+                                               corner.z > drawn.center().z ? more : -more};
+      box.add(corner + out);
+    }
+  }
+  if (casting.empty() || box.empty()) return std::nullopt;
+  with.cloud_size = std::max(float(sides / double(casting.size())), 1e-30F);
+  const std::vector<CloudShadow> all = shadowsOf(casting.size(), [&](size_t k) {
+    const Instance& instance = instances[casting[k]];
+    return CloudShadow(coarse.at(instance.caster), instance.to_world, worldExtinction(instance, light), to_light, shadows);
+  });
+  shade.grid = ShadeGrid(shadeFrame(box, to_light, with), all, to_light);
+  return shade;
+}
 
 ShadowCaster shadowCasterOf(const BakedMesh& mesh, int voxels, uint64_t memory_limit) {
   Cloud cloud;
@@ -109,16 +157,10 @@ bool drawsShadows(const SceneFile& scene) {
 SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> instances) : scene_(scene), instances_(instances) {
   if (!drawsShadows(scene)) return;
   const Vec3 to_light = keyLight(scene.light.sky).direction;
-  std::vector<size_t> owners = castersOf(scene, instances, to_light);
-  std::vector<std::optional<CloudShadow>> made(owners.size());
-  parallelFor(owners.size(), [&](size_t k) {
-    const Instance& instance = instances[owners[k]];
-    made[k].emplace(*instance.caster, instance.to_world, worldExtinction(instance, scene.light), to_light, scene.shadows);
-  });
-  std::vector<CloudShadow> shadows;
-  shadows.reserve(made.size());
-  for (std::optional<CloudShadow>& shadow : made) shadows.push_back(std::move(*shadow)), shadow.reset();
-  meshes_ = CloudShadows(std::move(shadows), std::move(owners), to_light);
+  if (scene.shadows.cloud_shade == CloudShade::kGrid)
+    makeGrid(to_light);
+  else
+    makeShadows(to_light);
 
   const auto add = [&](Kind kind, size_t index, LightPassage passage) { others_.push_back({kind, index, std::move(passage)}); };
   if (scene.terrain)
@@ -140,15 +182,47 @@ SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> ins
   addNoise(Kind::kDensity, scene.density_clouds, passDensityClouds);
 }
 
+void SceneShadows::makeShadows(Vec3 to_light) {
+  std::vector<size_t> owners = castersOf(scene_, instances_, to_light);
+  std::vector<CloudShadow> shadows = shadowsOf(owners.size(), [&](size_t k) {
+    const Instance& instance = instances_[owners[k]];
+    return CloudShadow(*instance.caster, instance.to_world, worldExtinction(instance, scene_.light), to_light, scene_.shadows);
+  });
+  meshes_ = CloudShadows(std::move(shadows), std::move(owners), to_light);
+}
+
+void SceneShadows::makeGrid(Vec3 to_light) {
+  std::optional<SceneShade> shade = shadeOf(instances_, scene_.light, scene_.shadows, to_light);
+  if (!shade) return;
+  grid_ = std::move(shade->grid);
+  others_of_.resize(instances_.size());
+  parallelFor(instances_.size(), [&](size_t i) {
+    if (instances_[i].is_seen && instances_[i].caster) others_of_[i] = grid_->pastOthers(shade->number[i]);
+  });
+}
+
+LightPassage SceneShadows::pastMeshes(bool are_lit_meshes, size_t owner) const {
+  if (are_lit_meshes && scene_.shadows.cloud_shade == CloudShade::kNone) return {};
+  if (grid_) {
+    const bool has_own = owner < others_of_.size() && others_of_[owner];
+    const ShadeBlock& block = has_own ? *others_of_[owner] : grid_->pastAll();
+    return [&block, &frame = grid_->frame()](std::span<const Vec3> points, std::span<float> shares) {
+      for (size_t k = 0; k < points.size(); ++k) shares[k] *= block.shareAt(frame.place(points[k]));
+    };
+  }
+  if (!meshes_.anyExceptOf(owner)) return {};
+  return [this, owner](std::span<const Vec3> points, std::span<float> shares) { meshes_.pass(points, shares, owner); };
+}
+
 LightPassage SceneShadows::pastAll(bool with_meshes, bool with_others, Kind but, size_t index) const {
   const size_t owner = but == Kind::kMesh ? index : CloudShadows::kNobody;
   std::vector<const LightPassage*> those;
   for (const Thing& thing : others_)
     if (with_others && (thing.kind != but || thing.index != index)) those.push_back(&thing.passage);
-  const CloudShadows* const meshes = with_meshes && meshes_.anyExceptOf(owner) ? &meshes_ : nullptr;
+  LightPassage meshes = with_meshes ? pastMeshes(but == Kind::kMesh && index != CloudShadows::kNobody, owner) : LightPassage{};
   if (!meshes && those.empty()) return {};
-  return [meshes, owner, those](std::span<const Vec3> points, std::span<float> shares) {
-    if (meshes) meshes->pass(points, shares, owner);
+  return [meshes = std::move(meshes), those](std::span<const Vec3> points, std::span<float> shares) {
+    if (meshes) meshes(points, shares);
     for (const LightPassage* one : those) (*one)(points, shares);
   };
 }
