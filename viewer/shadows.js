@@ -36,6 +36,8 @@ export class CloudShadow {
     this.height = Math.ceil(cells[this.aside] - 1 + Math.max(0, v_far)) + 2 - this.bottom;
     const slices = slicesOf(caster, axis, this.across, this.aside);
     this.sums = this.sumsOf(slices, sum => strength * (1 - Math.exp(-extinction * sum / 255 * (cell_size / sizes[axis]))));
+    this.cells = cells;
+    this.towards = own[axis] / cell_size;
     this.spread = Math.tan(softness * Math.PI / 180) * Math.hypot(...own) / sizes[axis];
     this.is_above = own[axis] > 0;
     this.low = slices.first - 0.5;
@@ -81,6 +83,38 @@ export class CloudShadow {
       - this.integralTo(u + half, v - half) + this.integralTo(u - half, v - half);
     const passed = clamp(1 - sum / (4 * half * half), 0, 1);
     return share < 1 ? passed ** share : passed;
+  }
+
+  // Where the way of the light through a point meets the plane of the shadow, and how far from the point, towards the light, it enters the
+  // heights of the cloud and leaves them.
+  wayThrough(point) {
+    const { to_own, origin, cell_size, slopes, high, low, is_above, towards } = this;
+    const place = this.vectorToOwn(point).map((x, i) => (x + to_own[9 + i] - origin[i]) / cell_size), a = place[this.axis];
+    return {
+      u: place[this.across] - slopes[0] * a, v: place[this.aside] - slopes[1] * a,
+      enters: ((is_above ? high : low) - a) / towards, leaves: ((is_above ? low : high) - a) / towards,
+    };
+  }
+
+  // The mean of what the whole cloud absorbs of the light over a rectangle of the plane around a place.
+  absorbedOver(u, v, half_u, half_v) {
+    const a = Math.max(0.5, half_u), b = Math.max(0.5, half_v), { left, bottom, width, height } = this;
+    if (u + a < left - 0.5 || v + b < bottom - 0.5 || u - a > left + width || v - b > bottom + height) return 0;
+    return (this.integralTo(u + a, v + b) - this.integralTo(u - a, v + b) - this.integralTo(u + a, v - b) + this.integralTo(u - a, v - b))
+      / (4 * a * b);
+  }
+
+  // Of the box of the field in the world.
+  corners() {
+    if (this.known_corners) return this.known_corners;
+    const { to_own: m, origin, cell_size, cells } = this, [a, b, c, d, e, f, g, h, i] = m;
+    const minors = [e * i - f * h, h * c - i * b, b * f - c * e, g * f - d * i, a * i - g * c, d * c - a * f, d * h - g * e, g * b - a * h, a * e - d * b];
+    const determinant = a * minors[0] + d * minors[1] + g * minors[2];
+    this.known_corners = Array.from({ length: 8 }, (_, corner) => {
+      const own = [0, 1, 2].map(axis => origin[axis] + cell_size * (corner >> axis & 1 ? cells[axis] - 0.5 : -0.5) - m[9 + axis]);
+      return [0, 1, 2].map(r => (minors[r] * own[0] + minors[3 + r] * own[1] + minors[6 + r] * own[2]) / determinant);
+    });
+    return this.known_corners;
   }
 
   // The same as 24 numbers for mesh_shadows.glsl.

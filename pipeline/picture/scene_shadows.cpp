@@ -71,6 +71,17 @@ std::vector<size_t> castersOf(const SceneFile& scene, std::span<const Instance> 
   return casters;
 }
 
+// Where the shadow of an instance in a grid is cast from: a cloud of a field is turned to the nearest of a few angles, as in the page of
+// `view`, which makes one shadow per mesh and angle.
+Affine shadingPlace(const Instance& instance) {
+  if (!instance.scattered) return instance.to_world;
+  constexpr float kTurn = 360.0F / 64;
+  const float turn = instance.scattered->turn_degrees;
+  Affine place = compose(placement({}, {0, std::floor(turn / kTurn + 0.5F) * kTurn - turn, 0}, {1, 1, 1}), instance.to_world);
+  place.offset = instance.to_world.offset;
+  return place;
+}
+
 // Shadows that are made side by side.
 template <typename Make>
 std::vector<CloudShadow> shadowsOf(size_t count, const Make& make) {
@@ -84,39 +95,46 @@ std::vector<CloudShadow> shadowsOf(size_t count, const Make& make) {
 
 }  // namespace
 
+std::optional<ShadeExtent> shadeExtent(std::span<const Instance> instances) {
+  ShadeExtent extent;
+  double sides = 0;
+  size_t casting = 0;
+  for (const Instance& instance : instances) {
+    if (!instance.caster) continue;
+    if (casting++ == 0 && instance.scattered) extent.wind = instance.scattered->wind;
+    const Box drawn = instance.scattered ? instance.scattered->field : placedBox(instance);
+    const float side = instance.scattered ? instance.scattered->longest_side : drawn.longestSide();
+    sides += double(side);
+    const float more = side * float(2 * kShadeCoarser) / kCasterVoxels;  // the cells of a caster reach beyond its mesh
+    if (drawn.empty()) continue;
+    extent.box.add(drawn.low - Vec3{more, more, more});
+    extent.box.add(drawn.high + Vec3{more, more, more});
+  }
+  if (extent.box.empty()) return std::nullopt;
+  extent.cloud_size = std::max(float(sides / double(casting)), 1e-30F);
+  return extent;
+}
+
 std::optional<SceneShade> shadeOf(std::span<const Instance> instances, const LightSettings& light, const ShadowSettings& shadows,
-                                  Vec3 to_light, const ShadeGridSettings& settings) {
+                                  Vec3 to_light) {
+  const std::optional<ShadeExtent> extent = shadeExtent(instances);
+  if (!extent) return std::nullopt;
   SceneShade shade;
   std::map<const ShadowCaster*, ShadowCaster> coarse;
   std::vector<size_t> casting;
-  ShadeGridSettings with = settings;
-  Box box;
-  double sides = 0;
   for (size_t i = 0; i < instances.size(); ++i) {
-    const Instance& instance = instances[i];
+    const ShadowCaster* const caster = instances[i].caster;
     shade.number.push_back(casting.size());
-    if (!instance.caster) continue;
-    if (!coarse.contains(instance.caster)) coarse[instance.caster] = coarserCaster(*instance.caster, kShadeCoarser);
-    if (casting.empty() && instance.scattered) with.wind = instance.scattered->wind;
+    if (!caster) continue;
+    if (!coarse.contains(caster)) coarse[caster] = coarserCaster(*caster, kShadeCoarser);
     casting.push_back(i);
-    const Box drawn = instance.scattered ? instance.scattered->field : placedBox(instance);
-    const float side = instance.scattered ? instance.scattered->longest_side : drawn.longestSide();
-    // A field of fractions reaches a coarse cell beyond its mesh.
-    const float more = side * float(2 * kShadeCoarser) / kCasterVoxels;
-    sides += double(side);
-    for (int c = 0; c < 8 && !drawn.empty(); ++c) {
-      const Vec3 corner = drawn.corner(c), out{corner.x > drawn.center().x ? more : -more, corner.y > drawn.center().y ? more : -more,
-                                               corner.z > drawn.center().z ? more : -more};
-      box.add(corner + out);
-    }
   }
-  if (casting.empty() || box.empty()) return std::nullopt;
-  with.cloud_size = std::max(float(sides / double(casting.size())), 1e-30F);
   const std::vector<CloudShadow> all = shadowsOf(casting.size(), [&](size_t k) {
     const Instance& instance = instances[casting[k]];
-    return CloudShadow(coarse.at(instance.caster), instance.to_world, worldExtinction(instance, light), to_light, shadows);
+    return CloudShadow(coarse.at(instance.caster), shadingPlace(instance), worldExtinction(instance, light), to_light, shadows);
   });
-  shade.grid = ShadeGrid(shadeFrame(box, to_light, with), all, to_light);
+  const ShadeGridSettings settings{.cloud_size = extent->cloud_size, .wind = extent->wind.value_or(Vec3{})};
+  shade.grid = ShadeGrid(shadeFrame(extent->box, to_light, settings), all, to_light);
   return shade;
 }
 

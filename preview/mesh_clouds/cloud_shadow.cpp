@@ -49,11 +49,7 @@ struct Slice {
 
 CloudShadow::CloudShadow(const ShadowCaster& caster, const Affine& to_world, float extinction, Vec3 to_light,
                          const ShadowSettings& settings)
-    : to_own_(inverted(to_world).value()),
-      to_world_(to_world),
-      origin_(caster.origin),
-      cells_(caster.cells),
-      cell_size_(caster.cell_size) {
+    : to_own_(inverted(to_world).value()), to_world_(to_world), origin_(caster.origin), cells_(caster.cells), cell_size_(caster.cell_size) {
   const Vec3 own = transformVector(to_own_, to_light);
   const std::array<double, 3> l = parts(own);
   axis_ = size_t(std::max_element(l.begin(), l.end(), [](double p, double q) { return std::abs(p) < std::abs(q); }) - l.begin());
@@ -125,8 +121,8 @@ CloudShadow::Way CloudShadow::wayThrough(const std::array<double, 3>& point) con
     place[r] = (m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + to_own_.offset[r] - origin[r]) / double(cell_size_);
   }
   const double a = place[axis_];
-  return {place[across_] - slope_across_ * a, place[aside_] - slope_aside_ * a,
-          ((light_is_above_ ? high_ : low_) - a) / towards_light_, ((light_is_above_ ? low_ : high_) - a) / towards_light_};
+  return {place[across_] - slope_across_ * a, place[aside_] - slope_aside_ * a, ((light_is_above_ ? high_ : low_) - a) / towards_light_,
+          ((light_is_above_ ? low_ : high_) - a) / towards_light_};
 }
 
 double CloudShadow::absorbedOver(double u, double v, double half_u, double half_v) const {
@@ -161,7 +157,8 @@ ShadowCaster coarserCaster(const ShadowCaster& caster, int factor) {
   for (int z = 0; z < caster.cells[2]; ++z)
     for (int y = 0; y < caster.cells[1]; ++y)
       for (int x = 0; x < caster.cells[0]; ++x)
-        sums[size_t((z / factor) * coarse.cells[1] + y / factor) * size_t(coarse.cells[0]) + size_t(x / factor)] += caster.fractions[cell++];
+        sums[size_t((z / factor) * coarse.cells[1] + y / factor) * size_t(coarse.cells[0]) + size_t(x / factor)] +=
+            caster.fractions[cell++];
   const int all = factor * factor * factor;
   for (const int sum : sums) coarse.fractions.push_back(uint8_t((2 * sum + all) / (2 * all)));
   return coarse;

@@ -15,8 +15,8 @@ namespace cloudbake {
 
 /// How fine a grid is.
 struct ShadeGridSettings {
-  int cells = 256;           ///< across the light, along the longer side, at most; 8 … 1024
-  int slices = 32;           ///< along the light, at most; 4 … 256
+  int cells = 384;           ///< across the light, along the longer side, at most; 8 … 1024
+  int slices = 16;           ///< along the light, at most; 4 … 256
   int cells_per_cloud = 16;  ///< no cell is smaller than this part of `cloud_size`
   float cloud_size = 1;      ///< the mean longest side of the clouds, world units, > 0
   Vec3 wind{};               ///< how far the clouds have drifted: the cells drift with them
