@@ -2,8 +2,8 @@
 // grid, because there may be thousands. A cloud of a field has the shadow of its mesh at a quarter of its resolution, turned by the nearest
 // of a few angles, so that only few shadows are made when the sun moves, and none when the clouds drift.
 
-import { shadeFrame, ShadeGrid } from './shade_grid.js';
-import { CloudShadow, coarserCaster } from './shadows.js';
+import { ShadeGrid, shadeFrame } from '../engines/npm/shade_grid.js';
+import { SweptShadow, coarserCaster } from '../engines/npm/swept_shadow.js';
 
 const TURNS = 64, COARSER = 4;
 const STILL = /** @type {Vec3} */ ([0, 0, 0]);
@@ -42,7 +42,7 @@ export class CloudShade {
     if (!known.has(turns)) {
       const angle = -turns * 2 * Math.PI / TURNS, [x, y, z] = this.light, c = Math.cos(angle), s = Math.sin(angle);
       const light = [c * x + s * z, y, c * z - s * x];
-      known.set(turns, new CloudShadow(caster, part.to_own, part.extinction * this.density, light, this.scene.shadows));
+      known.set(turns, new SweptShadow(caster, part.to_own, part.extinction * this.density, light, this.scene.shadows));
     }
     return known.get(turns);
   }

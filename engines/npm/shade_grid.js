@@ -1,7 +1,7 @@
 // How many clouds shade each other and the ground at once: preview/mesh_clouds/shade_grid.h. What the graphics card reads of it are two
 // textures: the shares of the light past all clouds, and for each cloud those past all others, at the nodes around it.
 
-import { clamp } from './vectors.js';
+const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
 
 const CELLS = 384, SLICES = 16, CELLS_PER_CLOUD = 16, MARGIN = 1.5, PER_DEPTH = 4096, LEAST = 1e-6, LEAST_ALONG = 0.02;
 
@@ -49,7 +49,7 @@ export function shadeFrame({ low, high, cloud_size }, light, wind) {
 /**
  * A cloud of a grid: the shadow of its mesh, in a space that is made larger, turned about y and moved to the world; its light is turned
  * with it. `power`: of what it lets through.
- * @typedef {{ shadow: import('./shadows.js').CloudShadow, at: Vec3, scale: number, cosine: number, sine: number, power: number }} ShadeCloud
+ * @typedef {{ shadow: import('./swept_shadow.js').SweptShadow, at: Vec3, scale: number, cosine: number, sine: number, power: number }} ShadeCloud
  */
 
 // A point of the world in the space of a cloud's shadow, and back.
@@ -101,12 +101,10 @@ export class ShadeGrid {
       return [u, v, rows[2][3] + per_way * enters, rows[2][3] + per_way * leaves];
     };
     const zero = meets(0, 0), one = meets(1, 0).map((x, i) => x - zero[i]), other = meets(0, 1).map((x, i) => x - zero[i]);
-    const half = [0, 1].map(i => Math.hypot(one[i], other[i]) / 2), depths = new Float64Array(count[0] * count[1]);
-    for (let j = 0, column = 0; j < count[1]; ++j)
-      for (let i = 0; i < count[0]; ++i, ++column) {
-        const absorbed = shadow.absorbedOver(zero[0] + i * one[0] + j * other[0], zero[1] + i * one[1] + j * other[1], half[0], half[1]);
-        if (absorbed > 0) depths[column] = -Math.log(clamp(1 - absorbed, LEAST, 1)) * power;
-      }
+    const depths = new Float64Array(count[0] * count[1]);
+    shadow.absorbedOver(zero, one, other, count, (column, absorbed) => {
+      depths[column] = -Math.log(clamp(1 - absorbed, LEAST, 1)) * power;
+    });
     const line = i => [zero[i], one[i], other[i]];
     return { first, count, depths, enters: line(2), leaves: line(3) };
   }
