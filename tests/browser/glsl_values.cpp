@@ -196,7 +196,8 @@ std::vector<Function> castShadowFunctions() {
 
 std::vector<Function> cloudShadeFunctions() {
   const auto place = [](Draws& draw) {
-    const Vec3 low{draw.between(-9, 0), draw.between(-9, 0), draw.between(-9, 0)}, size{draw.between(1, 9), draw.between(1, 9), draw.between(1, 9)};
+    const Vec3 low{draw.between(-9, 0), draw.between(-9, 0), draw.between(-9, 0)},
+        size{draw.between(1, 9), draw.between(1, 9), draw.between(1, 9)};
     Box box;
     box.add(low);
     box.add(low + size);
@@ -343,8 +344,8 @@ int main(int, char** words) {
   const std::filesystem::path folder = words[1];
   nlohmann::json all = nlohmann::json::array();
   for (const auto& functions :
-       {lobeFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(), castShadowFunctions(), cloudShadeFunctions(), noiseFunctions(), softFunctions(),
-        pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
+       {lobeFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(), castShadowFunctions(), cloudShadeFunctions(),
+        noiseFunctions(), softFunctions(), pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
       std::vector<Point> points(f.points);
       parallelFor(f.points, [&](uint32_t i) {

@@ -22,9 +22,9 @@
 namespace cloudbake {
 namespace {
 
-BakedMesh shadingBall(float extinction) {
+BakedMesh shadingBall(float extinction, int splits = 5) {
   BakedMesh mesh;
-  mesh.surface = ballMesh(1, 5);
+  mesh.surface = ballMesh(1, splits);
   mesh.lobes.resize(mesh.surface.positions.size());
   mesh.info.extinction = extinction;
   return mesh;
@@ -227,10 +227,60 @@ TEST(ShadeGrid, FieldsAreWithinTheirBoundOfExactChords) {
       std::printf("%zu | %g | %.3f | %.4f | %.4f, %.3f | %.4f, %.3f, %.1f (%d %d %d) | %.2f, %.2f, %.2f\n", instances.size(),
                   double(elevation), sum / double(n), rms(0), rms(1), each_seconds, rms(2), grid_seconds,
                   double(nodes[0]) * nodes[1] * nodes[2] * 2e-6, nodes[0], nodes[1], nodes[2], off(nullptr), off(&each), off(&grid));
+      // The ground below, at one place in 100 square units at most.
+      const ShadeBlock& all = shade->grid.pastAll();
+      constexpr int kSide = 48;
+      std::vector<double> ground(size_t(kSide) * kSide), darkness(ground.size());
+      parallelFor(kSide, [&](int row) {
+        for (int column = 0; column < kSide; ++column) {
+          const Vec3 place{half * (2 * (float(column) + 0.5F) / kSide - 1), 0, half * (2 * (float(row) + 0.5F) / kSide - 1)};
+          const double t = exact.shareAt(place, instances.size()), g = double(all.shareAt(shade->grid.frame().place(place)));
+          ground[size_t(row) * kSide + size_t(column)] = (g - t) * (g - t);
+          darkness[size_t(row) * kSide + size_t(column)] = (1 - t) * (1 - t);
+        }
+      });
+      std::printf("  ground: %.4f, without a shadow %.4f\n", rmsOf(ground, ground.size()), rmsOf(darkness, ground.size()));
+      EXPECT_LT(rmsOf(ground, ground.size()), 0.14);
       EXPECT_LT(rms(2), 0.11);
       EXPECT_LT(rms(2), 0.5 * rms(0));
     }
   }
+}
+
+// Cells drift with the clouds, so that the light of a vertex changes no faster from frame to frame than by shadows of each cloud.
+TEST(ShadeGrid, FieldsDriftWithoutAJump) {
+  const CastingMesh ball = casting(shadingBall(2, 3));
+  Scenery scenery;
+  DrawnField& field = scenery.fields.emplace_back();
+  field.settings.low = {-40, 20, -40}, field.settings.high = {40, 24, 40};
+  field.settings.count = 150, field.settings.drift = {3, 0, 1};
+  const double weights[] = {1};
+  field.clouds = scatterClouds(field.settings, weights);
+  field.meshes.push_back({&ball.mesh, placement({}, {}, {3, 2, 3}), &ball.caster});
+  const Vec3 to_sun = directionFromAngles(98, 20);
+  std::array<double, 2> largest{}, squares{};
+  size_t changes = 0;
+  for (size_t shade = 0; shade < 2; ++shade) {
+    const SceneFile scene = shadedScene(to_sun, shade == 0 ? CloudShade::kEach : CloudShade::kGrid);
+    std::vector<std::vector<float>> before;
+    std::vector<Instance> placed;
+    for (int frame = 0; frame < 12; ++frame) {
+      const std::vector<Instance> instances = instancesAt(scenery, 7 + frame / 30.0);
+      const auto now = SceneShadows(scene, instances).sharesOfVertices();
+      for (size_t i = 0; i < before.size(); ++i)
+        if (std::abs(instances[i].to_world.offset[0] - placed[i].to_world.offset[0]) > 1) before[i].clear();  // it has wrapped around
+      for (size_t i = 0; i < before.size(); ++i)
+        for (size_t v = 0; v < before[i].size(); ++v, ++changes) {
+          const double change = std::abs(double(now[i][v]) - double(before[i][v]));
+          largest[shade] = std::max(largest[shade], change), squares[shade] += change * change;
+        }
+      before = now, placed = instances;
+    }
+  }
+  std::printf("largest change of T in 1/30 s: each %.4f, grid %.4f; rms %.5f, %.5f\n", largest[0], largest[1],
+              std::sqrt(squares[0] / double(changes / 2)), std::sqrt(squares[1] / double(changes / 2)));
+  EXPECT_LT(squares[1], squares[0]);
+  EXPECT_LT(largest[1], largest[0]);
 }
 
 }  // namespace
