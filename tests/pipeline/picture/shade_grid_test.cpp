@@ -264,7 +264,7 @@ TEST(ShadeGrid, FieldsDriftWithoutAJump) {
     const SceneFile scene = shadedScene(to_sun, shade == 0 ? CloudShade::kEach : CloudShade::kGrid);
     std::vector<std::vector<float>> before;
     std::vector<Instance> placed;
-    for (int frame = 0; frame < 12; ++frame) {
+    for (int frame = 0; frame < 6; ++frame) {
       const std::vector<Instance> instances = instancesAt(scenery, 7 + frame / 30.0);
       const auto now = SceneShadows(scene, instances).sharesOfVertices();
       for (size_t i = 0; i < before.size(); ++i)
