@@ -64,8 +64,9 @@ const CommandSpec kCommands[] = {
      "DIR", runShader, "folder to write the files to"},
     {kShadow, "shadow", "ASSET.glb", "baked asset that casts the shadow",
      "draw the shadow that a baked asset casts under a sun, as a grey PNG for decals and light cookies",
-     "Examples:\n  cloudbake shadow cloud.glb -o shadow.png\n  cloudbake shadow cloud.glb --sun 0,90 --size 512 -o noon.png", "FILE",
-     runShadow, "file to write; its frame is written beside it, as .json", ".png"},
+     "Examples:\n  cloudbake shadow cloud.glb -o shadow.png\n  cloudbake shadow cloud.glb --sun 0,90 --size 512 -o noon.png\n  cloudbake "
+     "shadow --scene scene.toml -o ground.png",
+     "FILE", runShadow, "file to write; its frame is written beside it, as .json", ".png"},
     {kImpostor, "impostor", "ASSET.glb", "baked asset to take pictures of",
      "make pictures of a baked asset from all sides that any light can shine on, for clouds that are far away",
      "Examples:\n  cloudbake impostor cloud.glb -o far\n  cloudbake impostor cloud.glb --views 12 --frame 128 -o far\n"
@@ -234,8 +235,8 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
   if (requiresOutput(command) && line.output.empty() && !isGiven(line.given, "dry-run") && !serves)
     throw UsageError("-o " + std::string(command.output) + " is needed: where to write" + (command.bit == kView ? ", or --serve" : ""));
   const bool has_input = !line.input.empty() || !line.inputs.empty() || isGiven(line.given, "rules") ||
-                         isGiven(line.given, "from-spheres") || ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene")) ||
-                         isGiven(line.given, "watch");
+                         isGiven(line.given, "from-spheres") ||
+                         ((command.bit & (kPreview | kView | kShadow)) && isGiven(line.given, "scene")) || isGiven(line.given, "watch");
   if (command.bit == kShader && !has_input) throw UsageError(fmt::format("ENGINE is needed: one of {}", fmt::join(engineNames(), ", ")));
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }

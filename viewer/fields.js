@@ -1,15 +1,15 @@
 // Fields of clouds: a few meshes, once on the graphics card, of which every cloud is a copy. Where clouds are follows from the time:
 // preview/mesh_clouds/scatter.h. A picture takes one draw call for each mesh and level that is seen.
 
-import { FieldShadows } from './field_shadows.js';
 import { levelOf, pixelsAcross } from './levels.js';
 import { LIT_BY, LOCATIONS } from './programs.js';
-import { add } from './vectors.js';
 import { indexType, litBy, sampleOf } from './vertices.js';
 
 const NUMBERS = 6;  // of a cloud in field.clouds
-const PER_CLOUD = 8;  // floats on the graphics card: two vectors
+const PER_CLOUD = 11;  // floats on the graphics card: three vectors
 const LEAST_SHRINK = 1e-3;
+const LIGHT = { size: [1, 1, 1], numbers: Float32Array.of(1), shifts: new Float32Array(0) }, STILL = [0, 0, 0];  // of clouds in nobody's shade
+const NO_ROWS = [0, 1, 2].map(() => [0, 0, 0, 0]);
 
 /** Where a cloud of a field is at a time: its place, the factor of its size, and cosine and sine of its turn. @param {Field} field */
 export function placeAt({ clouds, low, high, drift, fade, horizon_scale, horizon_lower }, cloud, time) {
@@ -62,7 +62,7 @@ export class Fields {
     const { gl } = gpu, { arrays } = scene.scattered;
     this.gpu = gpu;
     this.scene = scene;
-    this.shadows = scene.scattered.casters.length ? new FieldShadows(scene) : null;
+    this.all = [];  // clouds at the time of the picture
     this.groups = [];  // the clouds that are drawn, by part: { part, first, count }
     this.buffers = [];
     this.meshes = gl.createVertexArray();
@@ -83,7 +83,7 @@ export class Fields {
     this.fill(gl.ELEMENT_ARRAY_BUFFER, arrays.triangles);
     this.clouds = gl.createBuffer();
     this.buffers.push(this.clouds);
-    for (const name of ['cloud_place', 'cloud_light']) gl.vertexAttribDivisor(LOCATIONS[name], 1);
+    for (const name of ['cloud_place', 'cloud_light', 'cloud_shade']) gl.vertexAttribDivisor(LOCATIONS[name], 1);
     gl.bindVertexArray(null);
   }
 
@@ -108,22 +108,24 @@ export class Fields {
   }
 
   /**
-   * Places the clouds of a picture, and chooses their levels. `sharesAt`: what comes of the light to points.
-   * @param {View} view @param {(points: Float32Array) => Float32Array} sharesAt
+   * Chooses the levels of the clouds of a picture, and lights them. `sharesAt`: what comes of the light to points past other things.
+   * @param {View} view @param {import('./cloud_shade.js').CloudShade} shade @param {(points: Float32Array) => Float32Array} sharesAt
    */
-  place(view, sharesAt) {
-    const { parts } = this.scene.scattered, all = this.allAt(view.time), drawn = parts.map(() => []);
+  place(view, shade, sharesAt) {
+    const { parts } = this.scene.scattered, { all } = this, drawn = parts.map(() => []);
     for (const [i, { part, seen }] of all.entries())
       if (isInView(seen, view)) drawn[levelOf(parts, part, () => pixelsAcross(seen, view))].push(i);
     const order = drawn.flat(), shares = sharesAt(new Float32Array(order.flatMap(i => all[i].center)));
-    if (this.shadows) {
-      this.shadows.setLight(view.to_light, view.density);
-      this.shadows.darken(all, order, shares);
-    }
+    const is_shaded = shade.grid && shade.kind !== 'none' && order.length > 0;
+    const { size, numbers, shifts } = is_shaded ? shade.blocksOf(order.map(i => all[i])) : LIGHT;
+    const [x, y, z] = is_shaded ? shade.grid.frame.rows : NO_ROWS;
+    this.gpu.uploadShares('cloud shades', size, numbers);
+    this.shade = { cloud_shades: 'cloud shades', shade_x: x, shade_y: y, shade_z: z };
     const data = new Float32Array(PER_CLOUD * order.length);
     for (const [k, i] of order.entries()) {
       const { placed: { at, scale, cosine, sine }, field } = all[i];
-      data.set([...at, scale, cosine, sine, shares[k], field.has_world_extinction ? scale : 1], PER_CLOUD * k);
+      const power = field.has_world_extinction ? scale : 1, shift = is_shaded ? shifts.subarray(3 * k, 3 * k + 3) : STILL;
+      data.set([...at, scale, cosine, sine, shares[k], power, ...shift], PER_CLOUD * k);
     }
     const { gl } = this.gpu;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);
@@ -136,15 +138,20 @@ export class Fields {
     }).filter(({ count }) => count > 0);
   }
 
-  // All clouds at a time, with their boxes and the balls around these.
+  // Places all clouds.
+  moveTo(time) {
+    if (time !== this.time) this.all = this.allAt(time);
+    this.time = time;
+  }
+
+  // All clouds at a time, with their boxes.
   allAt(time) {
     const all = [];
     for (const field of this.scene.scattered.fields)
       for (let cloud = 0; NUMBERS * cloud < field.clouds.length; ++cloud) {
         const placed = placeAt(field, cloud, time), { part, corners, longest } = field.meshes[field.clouds[NUMBERS * cloud + 5]];
         const { low, high } = boxOf(corners, placed), center = low.map((x, axis) => (x + high[axis]) / 2);
-        const radius = Math.hypot(...add(high, low, -1)) / 2;
-        all.push({ placed, field, part, center, radius, seen: { low, high, longest: longest * placed.scale } });
+        all.push({ placed, field, part, center, seen: { low, high, longest: longest * placed.scale } });
       }
     return all;
   }
@@ -156,7 +163,7 @@ export class Fields {
     // Of the other lights nothing is known here; harmonics have all their orders.
     const known = light => light.startsWith('harmonics') ? 'harmonics' : light === 'none' ? light : 'lobe';
     const lit = { ...view, light: known(view.light), against: known(view.against) };
-    const values = { ...view, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place, shown) };
+    const values = { ...view, ...this.shade, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place, shown) };
     const program = this.gpu.program(fragment, ['channels'], 'field.vert',
       ['lobe', 'harmonics', 'lamp', 'lamps', 'own_channels']);
     gl.bindVertexArray(this.meshes);
@@ -165,6 +172,7 @@ export class Fields {
       this.gpu.use(program, { ...values, ...litBy(scene, part, lit, volume_gain) });
       this.point('cloud_place', 4, 4 * PER_CLOUD, 4 * PER_CLOUD * first);
       this.point('cloud_light', 4, 4 * PER_CLOUD, 4 * PER_CLOUD * first + 16);
+      this.point('cloud_shade', 3, 4 * PER_CLOUD, 4 * PER_CLOUD * first + 32);
       gl.drawElementsInstanced(gl.TRIANGLES, part.count, type, part.first * triangles.BYTES_PER_ELEMENT, count);
     }
     gl.bindBuffer(gl.ARRAY_BUFFER, null);

@@ -59,14 +59,18 @@ export class Gpu {
     this.targets[name] = { name, texture, width, height };
   }
 
-  // A texture of four numbers per place in space, which is read between them: half floats.
-  uploadSpace(name, [width, height, depth], numbers) {
+  // A texture of four numbers per place in space, or one, which is read between them: half floats.
+  uploadSpace(name, [width, height, depth], numbers, format = /** @type {number} */ (this.gl.RGBA16F),
+    components = /** @type {number} */ (this.gl.RGBA)) {
     const { gl } = this, kind = gl.TEXTURE_3D, texture = this.newTexture(name, kind);
     for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, filter, gl.LINEAR);
     for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) gl.texParameteri(kind, edge, gl.CLAMP_TO_EDGE);
-    gl.texImage3D(kind, 0, gl.RGBA16F, width, height, depth, 0, gl.RGBA, gl.FLOAT, numbers);
+    gl.texImage3D(kind, 0, format, width, height, depth, 0, components, gl.FLOAT, numbers);
     this.targets[name] = { name, texture, width, height };
   }
+
+  // Shares of the light in space.
+  uploadShares(name, size, numbers) { this.uploadSpace(name, size, numbers, this.gl.R16F, this.gl.RED); }
 
   // In place of the one that had the name.
   newTexture(name, kind) {

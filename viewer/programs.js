@@ -6,11 +6,12 @@ export const LIT_BY = [
   ['seen', 'seen', 2], ['latticed', 'latticed', 2],
 ];
 const LIT_NAMES = [...LIT_BY.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)];
-// What field.vert reads besides harmonics and own colours, in places that light.vert does not use.
+// What field.vert reads besides harmonics and own colours, in places that light.vert does not use. It has no array without a buffer, so
+// that the shade is in one of them.
 const FIELD_NAMES = ['mesh_position', 'mesh_normal', 'mesh_lobe', 'cloud_place', 'cloud_light'];
 /** @type {Record<string, number>} */
 export const LOCATIONS = {
-  position: 0, light: 1, own: 2, ...Object.fromEntries(LIT_NAMES.map((name, index) => [name, index])),
+  position: 0, light: 1, own: 2, cloud_shade: 0, ...Object.fromEntries(LIT_NAMES.map((name, index) => [name, index])),
   ...Object.fromEntries(FIELD_NAMES.map((name, index) => [name, LIT_NAMES.length + index])),
 };
 

@@ -1,6 +1,7 @@
 // The looks of `preview` in WebGL2. A picture is drawn sample by sample and is final once every pixel has all of them.
 
 import { CHANNELS, LAMPS, OWN, SHOWN, drawChain } from './chains.js';
+import { CloudShade } from './cloud_shade.js';
 import { Fields } from './fields.js';
 import { drawPlainSample } from './plain.js';
 import { Vertices } from './vertices.js';
@@ -23,6 +24,7 @@ export class Renderer {
     this.vertices?.delete();
     this.vertices = new Vertices(this.gpu, scene);
     this.fields?.delete();
+    this.shade = new CloudShade(scene);
     this.fields = scene.scattered ? new Fields(this.gpu, scene) : null;
     this.skyKey = null;
   }
@@ -42,8 +44,11 @@ export class Renderer {
     this.box = cloudBox(this.corners, look, this.view, gpu.size);
     this.samples = 0;
     this.work = null;
-    this.vertices.light(this.view, look, layers, this.volume);
-    this.fields?.place(this.view, points => this.vertices.sharesAt(points, layers));
+    this.fields?.moveTo(this.view.time);
+    this.shade.update(this.view, this.fields?.all ?? []);
+    layers?.shadows.takeGrid(this.shade);
+    this.vertices.light(this.view, look, layers, this.volume, this.shade);
+    this.fields?.place(this.view, this.shade, points => this.vertices.sharesAt(points, layers));
     const { to_sun, forward, picture, per_pixel, eye, fewer } = this.view;
     const key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, layers && [eye, fewer, layers.settings]]);
     if (key !== this.skyKey) this.drawSky();

@@ -45,6 +45,9 @@ interface Lattice { origin: Vec3; cell_size: number; cells: [number, number, num
 
 interface Caster { origin: Vec3; cell_size: number; cells: [number, number, number]; fractions: Uint8Array }
 
+/** Where the nodes of a grid are by which clouds shade each other. */
+interface ShadeFrame { rows: number[][]; nodes: number[]; axis: number }
+
 /** A lamp, or flashes of lightning: of every 'every' seconds one, of which each stroke has a start and a strength. */
 interface Lamp {
   place: Vec3; color: Vec3; strength: number; range: number; radius: number; axis: Vec3; cone: number[];
@@ -80,6 +83,7 @@ interface Scene {
   extinction_times_size: number; far_sides: number; distance_fog: number; fog_color?: Vec3;
   casters: Omit<Caster, 'fractions'>[];
   shadows: { strength: number; softness: number };
+  shade?: { kind: 'none' | 'each' | 'grid'; low: Vec3; high: Vec3; cloud_size: number; drifts: boolean };  // without a cloud: the kind
   lamps?: Lamp[];
   parts: Part[]; corners: Vec3[];
   mesh?: any;

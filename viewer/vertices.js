@@ -122,22 +122,28 @@ export class Vertices {
     this.setLitBy('lengths', 2, lengths);
   }
 
+  // The shadows that placed clouds cast one by one, and what comes of the light to each vertex past them. With a grid there are none.
+  castOwnShadows({ to_light, density }, layers, kind) {
+    const { scene } = this, key = JSON.stringify([to_light, density, scene.shadows]);
+    if (key === this.cloudSharesKey) return;
+    this.cloudSharesKey = key;
+    const shadows = kind === 'grid' ? [] : shadowsOf(scene, to_light, density);
+    layers?.shadows.upload(shadows.map(({ shadow }) => shadow));
+    this.cloudShadows = kind === 'none' ? [] : shadows;
+    this.cloudShares = sharesOfLight(scene, this.cloudShadows);
+  }
+
   // What comes of the light to each vertex past other things.
-  castShadows({ to_light, density, time }, layers) {
-    const { scene } = this, clouds_key = JSON.stringify([to_light, density, scene.shadows]);
-    if (!(scene.casters.length || scene.layers)) return;
-    if (clouds_key !== this.cloudSharesKey) {
-      const shadows = shadowsOf(scene, to_light, density);
-      this.cloudShares = sharesOfLight(scene, shadows);
-      this.cloudShadows = shadows;
-      layers?.shadows.upload(shadows.map(({ shadow }) => shadow));
-    }
-    this.cloudSharesKey = clouds_key;
-    const key = JSON.stringify([clouds_key, layers && [time, layers.settings]]);
+  castShadows(view, layers, shade) {
+    const { scene, scene: { arrays: { positions } } } = this;
+    if (!(scene.casters.length || scene.layers || shade.grid)) return;
+    this.castOwnShadows(view, layers, shade.kind);
+    const key = JSON.stringify([this.cloudSharesKey, shade.grid && shade.key, layers && [view.time, layers.settings]]);
     if (key === this.sharesKey) return;
     this.sharesKey = key;
-    const others = layers?.shadows.sharesOfVertices(scene.arrays.positions);
-    this.setLitBy('sun_share', 1, others ? this.cloudShares.map((share, v) => share * others[v]) : this.cloudShares);
+    const others = layers?.shadows.sharesOfVertices(positions), shares = this.cloudShares.slice();
+    for (const part of scene.parts) shade.darken(part, scene.parts[part.level?.of] ?? part, positions, shares);
+    this.setLitBy('sun_share', 1, others ? shares.map((share, v) => share * others[v]) : shares);
   }
 
   // The light of the volume that the eye sees through each vertex.
@@ -183,8 +189,8 @@ export class Vertices {
   }
 
   // Computes the light that reaches each vertex, where anything of it has changed.
-  light(view, { half_lambert, half_lambert_sky, volume_gain }, layers, volume) {
-    this.castShadows(view, layers);
+  light(view, { half_lambert, half_lambert_sky, volume_gain }, layers, volume, shade) {
+    this.castShadows(view, layers, shade);
     if (volume && [view.light, view.against].includes('truth')) this.see(view, volume);
     if (layers && [view.light, view.against].includes('lattice')) this.takeLattices(view, layers);
     const { gl } = this.gpu, files = ['lobe', 'harmonics', 'lamp', 'lamps'];

@@ -26,6 +26,7 @@ const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 #include "lamp.glsl"
 
 #include "cast_shadow.glsl"
+#include "cloud_shade.glsl"
 
 #include "noise.glsl"
 

@@ -27,6 +27,7 @@ static const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 #include "lamp.hlsl"
 
 #include "cast_shadow.hlsl"
+#include "cloud_shade.hlsl"
 
 #include "noise.hlsl"
 

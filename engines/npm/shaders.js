@@ -88,6 +88,18 @@ export const writeVaryings = (sets, normal, matrix, place) => `
   #endif
 `;
 
+// What comes of the sun's light to a vertex past other clouds.
+export const SHADE = `
+#include "cloud_shade.glsl"
+uniform highp sampler3D cloud_shades;
+uniform vec4 cloud_shade_rows[3];
+
+float shadePastOthers(vec3 place, vec3 shift) {
+  vec3 at = shadePlace(place, cloud_shade_rows[0], cloud_shade_rows[1], cloud_shade_rows[2], shift);
+  return texture(cloud_shades, at / vec3(textureSize(cloud_shades, 0))).r;
+}
+`;
+
 // The light of LAMPS lamps.
 export const LAMPS = `
 #include "lamp.glsl"

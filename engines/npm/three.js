@@ -4,7 +4,7 @@ import { Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, LOD, LinearFi
 import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, settingsOf, skyDefaults, shadowValues, softValues, sunDefaults,
   switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
-import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, VARYINGS, harmonicNames, vertexLight,
+import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SHADE, SKY_COLOR, SOFT, TONE, VARYINGS, harmonicNames, vertexLight,
   writeVaryings } from './shaders.js';
 import { SOLID_DISTANCE } from './three_depth.js';
 
@@ -23,6 +23,14 @@ ${VARYINGS}
 ${vertexLight(order)}
 #ifdef LAMPS
   ${LAMPS}
+#endif
+#ifdef CLOUD_SHADE
+  ${SHADE}
+  #ifdef USE_INSTANCING
+    attribute vec3 cloud_shade_shift;
+  #else
+    uniform vec3 cloud_shade_shift;
+  #endif
 #endif
 void main() {
   #include <morphinstance_vertex>
@@ -49,6 +57,9 @@ void main() {
     to_world *= bindMatrixInverse * blend * bindMatrix;
   #endif
   ${writeVaryings(names, 'objectNormal', 'to_world', 'place')}
+  #ifdef CLOUD_SHADE
+    cloud_light.x *= shadePastOthers(place, cloud_shade_shift);
+  #endif
   cloud_view = isOrthographic ? -vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]) : place - cameraPosition;
 }
 `;
@@ -208,7 +219,7 @@ export class CloudMaterial extends SunlitMaterial {
       density_max: { value: 0 }, own_extinction: { value: 1 }, to_mesh: { value: new Matrix3() } };
     const soft = Object.fromEntries([...Object.keys(softValues({})), 'solid_depth', 'solid_clip'].map(name => [name, { value: null }]));
     super({ ...colors, ...numbers, ...soft, lamps: { value: [] }, shape: { value: new Vector2() }, phase: { value: new Vector3() },
-      painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
+      painted_range: { value: new Vector2() }, cloud_shade_shift: { value: new Vector3() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
     this.isCloudMaterial = true;
     this.painted = null;  // what PaintedClouds needs while it draws
@@ -246,6 +257,16 @@ export class CloudMaterial extends SunlitMaterial {
     this.lampList = lights;
   }
 
+  // The CloudShade that shades the clouds of the material; null: none does.
+  get cloudShade() { return this.shade ?? null; }
+  set cloudShade(shade) {
+    this.shade = shade;
+    if (shade) this.defines.CLOUD_SHADE = '';
+    else delete this.defines.CLOUD_SHADE;
+    this.needsUpdate = true;
+    if (shade) Object.assign(this.uniforms, shade.uniforms);
+  }
+
   get soft() { return 'SOFT' in this.defines; }
   set soft(is_soft) {
     if (is_soft === this.soft) return;
@@ -258,6 +279,7 @@ export class CloudMaterial extends SunlitMaterial {
     const { to_mesh } = this.uniforms, [, , { near, far }, , mesh] = given;
     if (mesh.userData.cloudToMesh) to_mesh.value.fromArray(mesh.userData.cloudToMesh);
     else to_mesh.value.identity();
+    if (mesh.userData.cloudShadeShift) this.uniforms.cloud_shade_shift.value.fromArray(mesh.userData.cloudShadeShift);
     if (this.soft) this.writeSoft(mesh.userData.cloudShown, near, far);
     super.onBeforeRender();
   }
@@ -291,7 +313,8 @@ export class CloudMaterial extends SunlitMaterial {
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
     const own = ['exponent', 'bias', 'extinction', 'densityMax', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume', 'harmonicOrder',
-      'harmonicExtinction', 'rimFrequency', 'rimScroll', 'insideLight', 'ditherShift', 'depthTexture', 'lamps', ...SOFT_NAMES, 'soft'];
+      'harmonicExtinction', 'rimFrequency', 'rimScroll', 'insideLight', 'ditherShift', 'depthTexture', 'lamps', ...SOFT_NAMES, 'soft',
+      'cloudShade'];
     for (const key of own) this[key] = source[key];
     return this;
   }

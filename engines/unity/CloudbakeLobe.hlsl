@@ -10,6 +10,7 @@
 #include "lamp.hlsl"
 
 #include "cast_shadow.hlsl"
+#include "cloud_shade.hlsl"
 
 #include "noise.hlsl"
 

@@ -18,6 +18,7 @@
 #include "pipeline/page/layer_data.h"
 #include "pipeline/page/live_layers.h"
 #include "pipeline/page/packed_mesh.h"
+#include "pipeline/picture/scene_shadows.h"
 #include "preview/mesh_clouds/levels.h"
 
 namespace cloudbake {
@@ -537,6 +538,21 @@ Json scatteredJson(const Scenery& scenery) {
   return json;
 }
 
+// How clouds shade each other, and what the grid encloses that the page makes for all clouds or, unless the scene has the grid, for those
+// of fields.
+Json shadeJson(CloudShade shade, std::vector<Instance> instances) {
+  const char* const kinds[]{"none", "each", "grid"};
+  Json json = {{"kind", kinds[size_t(shade)]}};
+  if (shade != CloudShade::kGrid) std::erase_if(instances, [](const Instance& one) { return !one.scattered; });
+  const std::optional<ShadeExtent> extent = shadeExtent(instances);
+  if (!extent) return json;
+  json["low"] = jsonOf(extent->box.low);
+  json["high"] = jsonOf(extent->box.high);
+  json["cloud_size"] = shortest(extent->cloud_size);
+  json["drifts"] = extent->wind.has_value();
+  return json;
+}
+
 }  // namespace
 
 LiveScene liveScene(const Scenery& scenery, const std::string& name) {
@@ -582,6 +598,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["mesh"] = meshJson(meshes, isLayered(file) ? &file : nullptr);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
+  scene["shade"] = shadeJson(file.shadows.cloud_shade, instances);
   if (!scenery.fields.empty()) scene["scattered"] = scatteredJson(scenery);
   const bool are_colored = meshes.are_colored || (!scenery.fields.empty() && scene["scattered"]["mesh"]["is_colored"]);
   if (hasMeshClouds(file) || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc, are_colored);

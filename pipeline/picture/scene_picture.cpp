@@ -268,7 +268,7 @@ std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
     const Vec3 wind{float(settings.drift.x * seconds), float(settings.drift.y * seconds), float(settings.drift.z * seconds)};
     for (const ScatteredCloud& cloud : field.clouds) {
       Instance instance = field.meshes[cloud.mesh];
-      instance.scattered = Scattered{boxes[cloud.mesh], all, wind, cloud.size * sides[cloud.mesh]};
+      instance.scattered = Scattered{boxes[cloud.mesh], all, wind, cloud.size * sides[cloud.mesh], cloud.turn_degrees};
       instance.to_world = placeAt(settings, cloud, instance.to_world, seconds);
       instances.push_back(instance);
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -70,7 +71,72 @@ std::vector<size_t> castersOf(const SceneFile& scene, std::span<const Instance> 
   return casters;
 }
 
+// Where the shadow of an instance in a grid is cast from: a cloud of a field is turned to the nearest of a few angles, as in the page of
+// `view`, which makes one shadow per mesh and angle.
+Affine shadingPlace(const Instance& instance) {
+  if (!instance.scattered) return instance.to_world;
+  constexpr float kTurn = 360.0F / 64;
+  const float turn = instance.scattered->turn_degrees;
+  Affine place = compose(placement({}, {0, std::floor(turn / kTurn + 0.5F) * kTurn - turn, 0}, {1, 1, 1}), instance.to_world);
+  place.offset = instance.to_world.offset;
+  return place;
+}
+
+// Shadows that are made side by side.
+template <typename Make>
+std::vector<CloudShadow> shadowsOf(size_t count, const Make& make) {
+  std::vector<std::optional<CloudShadow>> made(count);
+  parallelFor(count, [&](size_t k) { made[k].emplace(make(k)); });
+  std::vector<CloudShadow> shadows;
+  shadows.reserve(count);
+  for (std::optional<CloudShadow>& shadow : made) shadows.push_back(std::move(*shadow)), shadow.reset();
+  return shadows;
+}
+
 }  // namespace
+
+std::optional<ShadeExtent> shadeExtent(std::span<const Instance> instances) {
+  ShadeExtent extent;
+  double sides = 0;
+  size_t casting = 0;
+  for (const Instance& instance : instances) {
+    if (!instance.caster) continue;
+    if (casting++ == 0 && instance.scattered) extent.wind = instance.scattered->wind;
+    const Box drawn = instance.scattered ? instance.scattered->field : placedBox(instance);
+    const float side = instance.scattered ? instance.scattered->longest_side : drawn.longestSide();
+    sides += double(side);
+    const float more = side * float(2 * kShadeCoarser) / kCasterVoxels;  // the cells of a caster reach beyond its mesh
+    if (drawn.empty()) continue;
+    extent.box.add(drawn.low - Vec3{more, more, more});
+    extent.box.add(drawn.high + Vec3{more, more, more});
+  }
+  if (extent.box.empty()) return std::nullopt;
+  extent.cloud_size = std::max(float(sides / double(casting)), 1e-30F);
+  return extent;
+}
+
+std::optional<SceneShade> shadeOf(std::span<const Instance> instances, const LightSettings& light, const ShadowSettings& shadows,
+                                  Vec3 to_light) {
+  const std::optional<ShadeExtent> extent = shadeExtent(instances);
+  if (!extent) return std::nullopt;
+  SceneShade shade;
+  std::map<const ShadowCaster*, ShadowCaster> coarse;
+  std::vector<size_t> casting;
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const ShadowCaster* const caster = instances[i].caster;
+    shade.number.push_back(casting.size());
+    if (!caster) continue;
+    if (!coarse.contains(caster)) coarse[caster] = coarserCaster(*caster, kShadeCoarser);
+    casting.push_back(i);
+  }
+  const std::vector<CloudShadow> all = shadowsOf(casting.size(), [&](size_t k) {
+    const Instance& instance = instances[casting[k]];
+    return CloudShadow(coarse.at(instance.caster), shadingPlace(instance), worldExtinction(instance, light), to_light, shadows);
+  });
+  const ShadeGridSettings settings{.cloud_size = extent->cloud_size, .wind = extent->wind.value_or(Vec3{})};
+  shade.grid = ShadeGrid(shadeFrame(extent->box, to_light, settings), all, to_light);
+  return shade;
+}
 
 ShadowCaster shadowCasterOf(const BakedMesh& mesh, int voxels, uint64_t memory_limit) {
   Cloud cloud;
@@ -109,16 +175,10 @@ bool drawsShadows(const SceneFile& scene) {
 SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> instances) : scene_(scene), instances_(instances) {
   if (!drawsShadows(scene)) return;
   const Vec3 to_light = keyLight(scene.light.sky).direction;
-  std::vector<size_t> owners = castersOf(scene, instances, to_light);
-  std::vector<std::optional<CloudShadow>> made(owners.size());
-  parallelFor(owners.size(), [&](size_t k) {
-    const Instance& instance = instances[owners[k]];
-    made[k].emplace(*instance.caster, instance.to_world, worldExtinction(instance, scene.light), to_light, scene.shadows);
-  });
-  std::vector<CloudShadow> shadows;
-  shadows.reserve(made.size());
-  for (std::optional<CloudShadow>& shadow : made) shadows.push_back(std::move(*shadow)), shadow.reset();
-  meshes_ = CloudShadows(std::move(shadows), std::move(owners), to_light);
+  if (scene.shadows.cloud_shade == CloudShade::kGrid)
+    makeGrid(to_light);
+  else
+    makeShadows(to_light);
 
   const auto add = [&](Kind kind, size_t index, LightPassage passage) { others_.push_back({kind, index, std::move(passage)}); };
   if (scene.terrain)
@@ -140,15 +200,47 @@ SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> ins
   addNoise(Kind::kDensity, scene.density_clouds, passDensityClouds);
 }
 
+void SceneShadows::makeShadows(Vec3 to_light) {
+  std::vector<size_t> owners = castersOf(scene_, instances_, to_light);
+  std::vector<CloudShadow> shadows = shadowsOf(owners.size(), [&](size_t k) {
+    const Instance& instance = instances_[owners[k]];
+    return CloudShadow(*instance.caster, instance.to_world, worldExtinction(instance, scene_.light), to_light, scene_.shadows);
+  });
+  meshes_ = CloudShadows(std::move(shadows), std::move(owners), to_light);
+}
+
+void SceneShadows::makeGrid(Vec3 to_light) {
+  std::optional<SceneShade> shade = shadeOf(instances_, scene_.light, scene_.shadows, to_light);
+  if (!shade) return;
+  grid_ = std::move(shade->grid);
+  others_of_.resize(instances_.size());
+  parallelFor(instances_.size(), [&](size_t i) {
+    if (instances_[i].is_seen && instances_[i].caster) others_of_[i] = grid_->pastOthers(shade->number[i]);
+  });
+}
+
+LightPassage SceneShadows::pastMeshes(bool are_lit_meshes, size_t owner) const {
+  if (are_lit_meshes && scene_.shadows.cloud_shade == CloudShade::kNone) return {};
+  if (grid_) {
+    const bool has_own = owner < others_of_.size() && others_of_[owner];
+    const ShadeBlock& block = has_own ? *others_of_[owner] : grid_->pastAll();
+    return [&block, &frame = grid_->frame()](std::span<const Vec3> points, std::span<float> shares) {
+      for (size_t k = 0; k < points.size(); ++k) shares[k] *= block.shareAt(frame.place(points[k]));
+    };
+  }
+  if (!meshes_.anyExceptOf(owner)) return {};
+  return [this, owner](std::span<const Vec3> points, std::span<float> shares) { meshes_.pass(points, shares, owner); };
+}
+
 LightPassage SceneShadows::pastAll(bool with_meshes, bool with_others, Kind but, size_t index) const {
   const size_t owner = but == Kind::kMesh ? index : CloudShadows::kNobody;
   std::vector<const LightPassage*> those;
   for (const Thing& thing : others_)
     if (with_others && (thing.kind != but || thing.index != index)) those.push_back(&thing.passage);
-  const CloudShadows* const meshes = with_meshes && meshes_.anyExceptOf(owner) ? &meshes_ : nullptr;
+  LightPassage meshes = with_meshes ? pastMeshes(but == Kind::kMesh && index != CloudShadows::kNobody, owner) : LightPassage{};
   if (!meshes && those.empty()) return {};
-  return [meshes, owner, those](std::span<const Vec3> points, std::span<float> shares) {
-    if (meshes) meshes->pass(points, shares, owner);
+  return [meshes = std::move(meshes), those](std::span<const Vec3> points, std::span<float> shares) {
+    if (meshes) meshes(points, shares);
     for (const LightPassage* one : those) (*one)(points, shares);
   };
 }

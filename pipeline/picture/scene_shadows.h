@@ -12,6 +12,7 @@
 #include "preview/layer.h"
 #include "preview/light_passage.h"
 #include "preview/mesh_clouds/cloud_shadow.h"
+#include "preview/mesh_clouds/shade_grid.h"
 
 namespace cloudbake {
 
@@ -21,6 +22,27 @@ inline constexpr int kCasterVoxels = 64;
 std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warnings);
 /// The same with as many voxels as given. Throws InputError, without a file, if the mesh encloses nothing.
 ShadowCaster shadowCasterOf(const BakedMesh& mesh, int voxels, uint64_t memory_limit = kMemoryLimit);
+
+/// The fields of casters are this many times coarser in a grid by which many clouds shade each other.
+inline constexpr int kShadeCoarser = 4;
+/// What the grid of a scene encloses: the clouds that cast shadows, wherever they drift.
+struct ShadeExtent {
+  Box box;
+  float cloud_size = 1;      ///< the mean longest side
+  std::optional<Vec3> wind;  ///< how far they have drifted, if the first of them is of a field
+};
+/// None if no instance casts a shadow.
+std::optional<ShadeExtent> shadeExtent(std::span<const Instance> instances);
+
+/// The grid by which the instances of a scene that cast shadows shade each other, under a light. `number[i]` is the number of the cloud of
+/// instance i in the grid, if it casts a shadow.
+struct SceneShade {
+  ShadeGrid grid;
+  std::vector<size_t> number;
+};
+/// None if no instance casts a shadow.
+std::optional<SceneShade> shadeOf(std::span<const Instance> instances, const LightSettings& light, const ShadowSettings& shadows,
+                                  Vec3 to_light);
 
 /// Whether there are two things of which one could shadow the other, and the scene wants them to.
 bool drawsShadows(const SceneFile& scene);
@@ -53,9 +75,15 @@ class SceneShadows {
     LightPassage passage;
   };
 
+  void makeShadows(Vec3 to_light);
+  void makeGrid(Vec3 to_light);
+  LightPassage pastMeshes(bool are_lit_meshes, size_t owner) const;
+
   const SceneFile& scene_;
   std::span<const Instance> instances_;
   CloudShadows meshes_;
+  std::optional<ShadeGrid> grid_;                     // in place of these
+  std::vector<std::optional<ShadeBlock>> others_of_;  // by instance, of those that are seen and cast a shadow
   std::vector<Thing> others_;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/text/maker.h"
 #include "io/gltf/asset_info.h"
@@ -76,19 +77,66 @@ ShadowPicture drawShadow(const BakedMesh& mesh, const Settings& settings) {
   return drawShadow(mesh, to_sun, settings.shadow.size, settings.shadow.extinction, settings.picture.memory_limit);
 }
 
+ShadowPicture drawShadow(const Scenery& scenery, const ShadowPictureSettings& settings) {
+  const std::vector<Instance> instances = instancesAt(scenery, scenery.scene.view);
+  std::vector<Vec3> corners;
+  for (const Instance& instance : instances) {
+    if (!instance.caster) continue;
+    const Box box = placedBox(instance);
+    const float more = 2 * float(kShadeCoarser) / kCasterVoxels;  // the field of a caster reaches beyond its mesh
+    for (int i = 0; i < 8 && !box.empty(); ++i) corners.push_back(box.center() + (box.corner(i) - box.center()) * (1 + 2 * more));
+  }
+  if (corners.empty())
+    throw InputError(
+        "", 0,
+        "no cloud casts a shadow: a scene needs two mesh clouds, a field, or a ground below its cloud, and [light] shadows; of one "
+        "cloud give its file");
+  ShadowPicture picture;
+  picture.size = settings.size;
+  const Vec3 to_sun = keyLight(scenery.scene.light.sky).direction;
+  ShadowFrame& frame = picture.frame;
+  frame = shadowFrame(corners, to_sun);
+  const float clear = float(picture.size) / float(picture.size - 4);
+  frame.width *= clear, frame.height *= clear;
+
+  SceneFile scene = scenery.scene;
+  scene.terrain.reset(), scene.slabs.clear(), scene.distance_clouds.clear(), scene.density_clouds.clear();
+  scene.terrain.emplace();  // what is below, so that all clouds cast a shadow
+  scene.shadows.softness_degrees = 0;
+  const SceneShadows shadows(scene, instances);
+  const LightPassage passage = shadows.past(SceneShadows::Kind::kTerrain);
+  const Vec3 behind = frame.origin - to_sun * (2 * (frame.top - frame.bottom));
+  picture.transmittance.resize(size_t(picture.size) * size_t(picture.size));
+  parallelFor(picture.size, [&](int row) {
+    std::vector<Vec3> points;
+    for (int column = 0; column < picture.size; ++column)
+      for (int place = 0; place < kPlaces * kPlaces; ++place) {
+        const float x = (float(column) + (float(place % kPlaces) + 0.5F) / kPlaces) / float(picture.size) - 0.5F;
+        const float y = 0.5F - (float(row) + (float(place / kPlaces) + 0.5F) / kPlaces) / float(picture.size);
+        points.push_back(behind + frame.right * (x * frame.width) + frame.up * (y * frame.height));
+      }
+    std::vector<float> shares(points.size(), 1);
+    if (passage) passage(points, shares);
+    for (size_t i = 0; i < shares.size(); ++i)
+      picture.transmittance[size_t(row) * size_t(picture.size) + i / (kPlaces * kPlaces)] += shares[i] / (kPlaces * kPlaces);
+  });
+  return picture;
+}
+
 ShadowFiles encodeShadow(const ShadowPicture& picture) {
   const ShadowFrame& frame = picture.frame;
-  const Json json = {{"schema", "cloudbake-shadow-1"},
-                     {"generator", kMaker},
-                     {"origin", numbersOf(frame.origin)},
-                     {"right", numbersOf(frame.right)},
-                     {"up", numbersOf(frame.up)},
-                     {"to_sun", numbersOf(frame.to_sun)},
-                     {"width", shortest(frame.width)},
-                     {"height", shortest(frame.height)},
-                     {"top", shortest(frame.top)},
-                     {"bottom", shortest(frame.bottom)},
-                     {"sigma", shortest(picture.extinction)}};
+  Json json = {{"schema", "cloudbake-shadow-1"},
+               {"generator", kMaker},
+               {"origin", numbersOf(frame.origin)},
+               {"right", numbersOf(frame.right)},
+               {"up", numbersOf(frame.up)},
+               {"to_sun", numbersOf(frame.to_sun)},
+               {"width", shortest(frame.width)},
+               {"height", shortest(frame.height)},
+               {"top", shortest(frame.top)},
+               {"bottom", shortest(frame.bottom)},
+               {"sigma", shortest(picture.extinction)}};
+  if (!(picture.extinction > 0)) json.erase("sigma");  // each cloud has its own
   std::vector<uint8_t> grey;
   for (const float share : picture.transmittance) grey.push_back(uint8_t(std::lround(255 * std::clamp(share, 0.0F, 1.0F))));
   return {encodeGreyPng(picture.size, picture.size, grey, kShadowKeyword, json.dump()), json.dump(2) + "\n"};

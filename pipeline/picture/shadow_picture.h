@@ -10,6 +10,7 @@
 #include "core/memory_budget.h"
 #include "core/types.h"
 #include "pipeline/options/settings.h"
+#include "pipeline/picture/scene_picture.h"
 #include "preview/mesh_clouds/shadow_frame.h"
 
 namespace cloudbake {
@@ -31,6 +32,11 @@ ShadowPicture drawShadow(const BakedMesh& mesh, Vec3 to_sun, int size, std::opti
 
 /// The same of the light and with the size that settings give.
 ShadowPicture drawShadow(const BakedMesh& mesh, const Settings& settings);
+
+/// The shadow of all mesh clouds of a scene at its view's time, under its key light, on what is below all of them, by the grid of the scene
+/// or by a shadow of each, as its [light] says. The extinction is 0, because each cloud has its own. Throws InputError, without a file, if
+/// no cloud of it casts a shadow.
+ShadowPicture drawShadow(const Scenery& scenery, const ShadowPictureSettings& settings);
 
 /// A grey PNG with 8 bits per pixel, whose values are linear, and its frame as JSON, schema "cloudbake-shadow-1", which the PNG has as the
 /// text of this keyword too. The values are 255 times the transmittance.

@@ -64,6 +64,7 @@ void readCamera(TomlReader table, SceneFile& scene) {
 
 void readLight(TomlReader table, LightSettings& light, ShadowSettings& shadows, PhaseSettings& phase) {
   readKeys(table, shadowKeys(), shadows);
+  table.read("cloud_shade", {{"each", CloudShade::kEach}, {"grid", CloudShade::kGrid}, {"none", CloudShade::kNone}}, shadows.cloud_shade);
   readKeys(table, lightKeys(), light);
   readKeys(table, phaseKeys(), phase);
   table.finish();

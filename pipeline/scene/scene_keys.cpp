@@ -109,6 +109,8 @@ constexpr SpecialKey kSpecialKeys[]{
     {"sky.moon", "elevation", "45", kAngle, "height of the moon above the horizon; with [sun] hour: on the sun's circle", kOneChoice},
     {"sky.stars", "pole", "of the hour, or [0, 0.707, -0.707]", kPlace, "direction of the axis about which the stars turn",
      "without the key it is that of the sun's circle"},
+    {"light", "cloud_shade", "\"each\"", "each, grid, none",
+     "how mesh clouds shade each other; each: by a shadow of each; grid: by one grid of the whole sky, for many clouds", kOneChoice},
     {"chain", "as_published", "false", kSwitch, "the chain of the source; light, sun and camera are those of the plain look", kDefaults},
     {"chain", "mean", "\"covered\"", "covered, all", "pixels that count in means, with as_published", kOneChoice},
     {"cloud", "file", "unset", "a file", "baked cloud, .glb; a cloud has a file or a preset", kInMesh},

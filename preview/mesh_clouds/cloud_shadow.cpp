@@ -49,13 +49,14 @@ struct Slice {
 
 CloudShadow::CloudShadow(const ShadowCaster& caster, const Affine& to_world, float extinction, Vec3 to_light,
                          const ShadowSettings& settings)
-    : to_own_(inverted(to_world).value()), to_world_(to_world), origin_(caster.origin), cell_size_(caster.cell_size) {
+    : to_own_(inverted(to_world).value()), to_world_(to_world), origin_(caster.origin), cells_(caster.cells), cell_size_(caster.cell_size) {
   const Vec3 own = transformVector(to_own_, to_light);
   const std::array<double, 3> l = parts(own);
   axis_ = size_t(std::max_element(l.begin(), l.end(), [](double p, double q) { return std::abs(p) < std::abs(q); }) - l.begin());
   across_ = (axis_ + 1) % 3, aside_ = (axis_ + 2) % 3;
   slope_across_ = l[across_] / l[axis_], slope_aside_ = l[aside_] / l[axis_];
   per_slice_ = double(cell_size_) / std::abs(l[axis_]);
+  towards_light_ = l[axis_] / double(cell_size_);
   spread_ = tanDegrees(settings.softness_degrees) * double(length(own)) / std::abs(l[axis_]);
   light_is_above_ = l[axis_] > 0;
 
@@ -110,6 +111,57 @@ double CloudShadow::integralTo(double u, double v) const {
   const double* at = &sums_[size_t(y0) * (size_t(width_) + 1) + size_t(x0)];
   const double* above = at + width_ + 1;
   return (1 - q) * ((1 - p) * at[0] + p * at[1]) + q * ((1 - p) * above[0] + p * above[1]);
+}
+
+CloudShadow::Way CloudShadow::wayThrough(const std::array<double, 3>& point) const {
+  std::array<double, 3> place{};
+  const std::array<double, 3> origin = parts(origin_);
+  for (size_t r = 0; r < 3; ++r) {
+    const auto& m = to_own_.linear[r];
+    place[r] = (m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + to_own_.offset[r] - origin[r]) / double(cell_size_);
+  }
+  const double a = place[axis_];
+  return {place[across_] - slope_across_ * a, place[aside_] - slope_aside_ * a, ((light_is_above_ ? high_ : low_) - a) / towards_light_,
+          ((light_is_above_ ? low_ : high_) - a) / towards_light_};
+}
+
+double CloudShadow::absorbedOver(double u, double v, double half_u, double half_v) const {
+  const double a = std::max(0.5, half_u), b = std::max(0.5, half_v);
+  const double sum = integralTo(u + a, v + b) - integralTo(u - a, v + b) - integralTo(u + a, v - b) + integralTo(u - a, v - b);
+  return sum / (4 * a * b);
+}
+
+std::array<std::array<double, 3>, 8> CloudShadow::corners() const {
+  std::array<std::array<double, 3>, 8> all{};
+  const std::array<double, 3> origin = parts(origin_);
+  for (size_t i = 0; i < 8; ++i) {
+    std::array<double, 3> own{};
+    for (size_t axis = 0; axis < 3; ++axis)
+      own[axis] = origin[axis] + double(cell_size_) * ((i >> axis & 1U) != 0 ? cells_[axis] - 0.5 : -0.5);
+    for (size_t r = 0; r < 3; ++r) {
+      const auto& m = to_world_.linear[r];
+      all[i][r] = m[0] * own[0] + m[1] * own[1] + m[2] * own[2] + to_world_.offset[r];
+    }
+  }
+  return all;
+}
+
+ShadowCaster coarserCaster(const ShadowCaster& caster, int factor) {
+  ShadowCaster coarse;
+  const float shift = float(factor - 1) / 2 * caster.cell_size;
+  coarse.origin = caster.origin + Vec3{shift, shift, shift};
+  coarse.cell_size = float(factor) * caster.cell_size;
+  for (size_t axis = 0; axis < 3; ++axis) coarse.cells[axis] = (caster.cells[axis] + factor - 1) / factor;
+  std::vector<int> sums(size_t(coarse.cells[0]) * size_t(coarse.cells[1]) * size_t(coarse.cells[2]));
+  size_t cell = 0;
+  for (int z = 0; z < caster.cells[2]; ++z)
+    for (int y = 0; y < caster.cells[1]; ++y)
+      for (int x = 0; x < caster.cells[0]; ++x)
+        sums[size_t((z / factor) * coarse.cells[1] + y / factor) * size_t(coarse.cells[0]) + size_t(x / factor)] +=
+            caster.fractions[cell++];
+  const int all = factor * factor * factor;
+  for (const int sum : sums) coarse.fractions.push_back(uint8_t((2 * sum + all) / (2 * all)));
+  return coarse;
 }
 
 float CloudShadow::shareAt(Vec3 point) const {

@@ -23,8 +23,16 @@ struct ShadowCaster {
   std::vector<uint8_t> fractions;  ///< 0 … 255, for 0 … 1; x fastest
 };
 
+/// The same field with cells that are so many times larger.
+ShadowCaster coarserCaster(const ShadowCaster& caster, int factor);
+
+/// How mesh clouds shadow each other: not at all, each by its own shadow, or all by one grid (shade_grid.h), which they also shadow other
+/// things by.
+enum class CloudShade : uint8_t { kNone, kEach, kGrid };
+
 struct ShadowSettings {
   bool are_drawn = true;
+  CloudShade cloud_shade = CloudShade::kEach;
   float strength = 1;              ///< of all shadows that clouds cast, 0 … 1
   float softness_degrees = 0.75F;  ///< half the angle over which a shadow's edge is spread, ≥ 0; the sun's disc has 0.27
 };
@@ -51,11 +59,25 @@ class CloudShadow {
   /// Outside of it shareAt is 1. `across` and `aside` are at right angles to each other and to the light that the shadow was made for.
   ShadowReach reach(Vec3 to_light, Vec3 across, Vec3 aside) const;
 
+  /// Where the way of the light through a point of the world meets the plane of the shadow, and how far from the point, towards the light,
+  /// it enters the heights of the cloud and leaves them.
+  struct Way {
+    double u = 0, v = 0, enters = 0, leaves = 0;
+  };
+  Way wayThrough(const std::array<double, 3>& point) const;
+  /// The mean of what the whole cloud absorbs of the light over a rectangle of the plane around a place. Half of a side is at least half a
+  /// cell.
+  double absorbedOver(double u, double v, double half_u, double half_v) const;
+  /// Of the box of the field in the world.
+  std::array<std::array<double, 3>, 8> corners() const;
+
  private:
   double integralTo(double u, double v) const;
 
   Affine to_own_, to_world_;
   Vec3 origin_;
+  std::array<int, 3> cells_;
+  double towards_light_;  // cells along the axis per world unit towards the light
   float cell_size_;
   size_t axis_, across_, aside_;       // the axis that the light follows most, and the other two
   double slope_across_, slope_aside_;  // cells per cell along the axis

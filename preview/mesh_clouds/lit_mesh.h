@@ -48,6 +48,7 @@ struct Scattered {
   Box field;               ///< which the clouds of the field never leave
   Vec3 wind;               ///< how far the field has drifted
   float longest_side = 1;  ///< of the cloud where nothing shrinks it, world units
+  float turn_degrees = 0;  ///< about y
 };
 
 /// A mesh placed in the scene. The mesh must outlive the instance.

@@ -8,6 +8,10 @@ in vec4 harmonics_0, harmonics_1, harmonics_2, harmonics_3;
 in vec4 cloud_place;  // and the factor of the size
 in vec4 cloud_light;  // cosine and sine of the turn, what comes of the sun's light past other things, factor of the thickness times σ
 
+in vec3 cloud_shade;  // from the coordinates of the grid by which clouds shade each other to those of the cloud's block
+
+uniform highp sampler3D cloud_shades;  // for each cloud, what comes of the sun's light past all others
+uniform vec4 shade_x, shade_y, shade_z;  // rows that take a point of the world to the coordinates of the grid
 uniform vec3 eye, right, up, forward;
 uniform vec2 scale;  // from tangents to the screen's [-1, 1]
 uniform vec2 place;  // of the sample in the pixel, less its centre, in the screen's [-1, 1]
@@ -32,8 +36,14 @@ float transmittance(int light, vec3 towards, float sigma) {
   return lobeTransmittance(mesh_lobe, towards, shape, sigma);
 }
 
+float shareOfSun() {
+  vec4 world = vec4(from_eye + eye, 1.0);
+  vec3 at = vec3(dot(shade_x, world), dot(shade_y, world), dot(shade_z, world)) + cloud_shade;
+  return cloud_light.z * texture(cloud_shades, (at + 0.5) / vec3(textureSize(cloud_shades, 0))).r;
+}
+
 vec2 shadeBy(int light, float gain, vec3 towards, float sigma) {
-  float sun = min(gain * transmittance(light, towards, sigma), 1.0) * surfaceFactor(mesh_normal, towards, half_lambert) * cloud_light.z;
+  float sun = min(gain * transmittance(light, towards, sigma), 1.0) * surfaceFactor(mesh_normal, towards, half_lambert) * shareOfSun();
   vec3 above = vec3(0.0, 1.0, 0.0);  // no turn about y changes it
   return vec2(sun, transmittance(light, above, sigma) * surfaceFactor(mesh_normal, above, half_lambert_sky));
 }

@@ -4,6 +4,10 @@
 uniform highp sampler2DArray shadow_sums;
 uniform highp sampler2D shadow_frames;
 uniform int shadow_count;
+// The grid of all clouds that shade each other by it: ShadeGrid of preview/mesh_clouds/shade_grid.h.
+uniform highp sampler3D shade_shares;
+uniform vec4 shade_x, shade_y, shade_z;  // rows that take a point of the world to the coordinates of its nodes
+uniform bool has_shade;
 
 float shadowIntegral(int index, vec2 place, vec4 frame) {
   vec2 at = clamp(place - frame.xy + 0.5, vec2(0.0), frame.zw);
@@ -42,6 +46,11 @@ float shadowShare(int index, vec3 point) {
 
 float meshShare(vec3 point) {
   float share = 1.0;
+  if (has_shade) {
+    vec4 world = vec4(point, 1.0);
+    vec3 at = vec3(dot(shade_x, world), dot(shade_y, world), dot(shade_z, world));
+    share = texture(shade_shares, (at + 0.5) / vec3(textureSize(shade_shares, 0))).r;
+  }
   for (int i = 0; i < shadow_count; i++) {
     share *= shadowShare(i, point);
   }

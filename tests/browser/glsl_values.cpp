@@ -23,6 +23,7 @@
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/post.h"
 #include "preview/mesh_clouds/render.h"
+#include "preview/mesh_clouds/shade_grid.h"
 #include "preview/mesh_clouds/shadow_frame.h"
 #include "preview/shading_math.h"
 #include "tests/browser/glsl_values.h"
@@ -193,6 +194,28 @@ std::vector<Function> castShadowFunctions() {
   return {{"cast_shadow", "shadowPlace, shadowDepth and shadowFactor", call("p[0].xyz"), call("p[0].yxz"), 4e-6, 4e-6, share}};
 }
 
+std::vector<Function> cloudShadeFunctions() {
+  const auto place = [](Draws& draw) {
+    const Vec3 low{draw.between(-9, 0), draw.between(-9, 0), draw.between(-9, 0)},
+        size{draw.between(1, 9), draw.between(1, 9), draw.between(1, 9)};
+    Box box;
+    box.add(low);
+    box.add(low + size);
+    const ShadeFrame frame = shadeFrame(box, draw.direction(), {.cells = 48, .cells_per_cloud = 4});
+    const Vec3 point = low + Vec3{draw.between(0, 1) * size.x, draw.between(0, 1) * size.y, draw.between(0, 1) * size.z};
+    const std::array<double, 3> at = frame.place(point);
+    std::vector<Texel> given{texel(point)};
+    for (const auto& row : frame.to_grid) given.push_back({float(row[0]), float(row[1]), float(row[2]), float(row[3])});
+    const float shift = draw.between(-40, 40);
+    given[0][3] = shift;
+    return Point{given, {float(at[0] + double(shift) + 0.5), float(at[2] + 1.5), float(at[0] + 0.5), float(at[1] + 0.5)}};
+  };
+  const auto call = [](const std::string& point) {
+    return "vec4(shadePlace(" + point + ", p[1], p[2], p[3], vec3(p[0].w, 0.0, 1.0)).xz, shadeGroundPlace(" + point + ", p[1], p[2]))";
+  };
+  return {{"cloud_shade", "shadePlace and shadeGroundPlace", call("p[0].xyz"), call("p[0].yxz"), 2e-4, 4e-6, place}};
+}
+
 std::vector<Function> noiseFunctions() {
   // At the lattice points a value is a hash.
   const auto hashes = [](Draws& draw) {
@@ -321,8 +344,8 @@ int main(int, char** words) {
   const std::filesystem::path folder = words[1];
   nlohmann::json all = nlohmann::json::array();
   for (const auto& functions :
-       {lobeFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(), castShadowFunctions(), noiseFunctions(), softFunctions(),
-        pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
+       {lobeFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(), castShadowFunctions(), cloudShadeFunctions(),
+        noiseFunctions(), softFunctions(), pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
       std::vector<Point> points(f.points);
       parallelFor(f.points, [&](uint32_t i) {

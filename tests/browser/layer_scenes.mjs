@@ -21,6 +21,8 @@ const LAYERS = {
   ramp: `[sky]\nramp = 'painted.png'\nramp_high = 60\n${TERRAIN}`,
   sunk_horizon: `[sky]\nviewer_height = 0.01\n[[marched]]\ncloud_height = 12\n`,
   dust: `[[cloud]]\nfile = 'dusty.glb'\nposition = [0, 5, 14]\n[[dust]]\nlattice = 'dusty.json'\nposition = [0, 5, 14]\nthickness = 1\n`,
+  shade: `${TERRAIN}[[cloud]]\nfile = 'dusty.glb'\nscale = 1.2\n[cloud.scatter]\nlow = [-16, 8, -20]\nhigh = [16, 11, 12]\ncount = 40\n` +
+    `size = [0.7, 1.3]\ndrift = [0.5, 0, 0]\n[[cloud]]\nfile = 'dusty.glb'\nposition = [3, 9, 5]\n`,
   smooth_disc: `[sky]\ndisc = 'smooth'\n${TERRAIN}`,
   samples: '[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n',
   grade: `${TERRAIN}[grade]\nvignette = 0.5\ncontrast = 0.4\n`,
@@ -32,7 +34,7 @@ const beginning = name => PLAIN.replace('elevation = 34', `elevation = ${SUNS[na
 
 // The text of each scene file by its name.
 export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) =>
-  [name, `${beginning(name)}${text}[light]\nshadows = true\n`]));
+  [name, `${beginning(name)}${text}[light]\nshadows = true\n${name === 'shade' ? 'cloud_shade = "grid"\n' : ''}`]));
 
 export const SCENES = ['dawn_terrain', 'dusk_moon', 'flight', 'sea_noon', 'storm', 'toon'];
 

@@ -15,7 +15,7 @@ const { binary, source, folder, run, open } = testFolder();
 const BOUNDS = {
   terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, twilight: 0.999, fog: 0.999,
   smooth_disc: 0.999, smooth_moon: 0.999, moon_picture: 0.999, aurora: 0.999, ramp: 0.999, sunk_horizon: 0.9995, dust: 0.9995,
-  samples: 0.9995, grade: 0.999, square_root: 0.999,
+  samples: 0.9995, grade: 0.999, square_root: 0.999, shade: 0.998,
 }, SCENE_BOUND = 0.999;
 // Mistakes that the comparison must see: what is changed in the scene of the page, and the share that it may reach at most.
 const CONTROLS = {
@@ -28,6 +28,7 @@ const CONTROLS = {
   'the top of the moon upwards': ['moon_picture', scene => { scene.sky.moon.up = [0, 1, 0]; }, 0.9995],
   'a smooth disc 5 % brighter': ['smooth_moon', scene => { scene.sky.moon.smooth_gain *= 1.05; }, 0.99],
   'the dust not as far': ['dust', scene => { scene.dust[0].reach *= 0.95; }, 0.98],
+  'no shade on the land': ['shade', scene => { scene.has_shadows = false; }, 0.98],
   'another terrain': ['terrain', scene => { scene.terrain.seed = 1; }, 0.9],
 };
 // The words of a preview, and the same in the page.

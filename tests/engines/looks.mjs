@@ -175,6 +175,29 @@ async function shadowOfTheCloud(page, engine) {
     `off by ${off.toExponential(1)} at most`);
 }
 
+// Of three clouds, one is between another one and the sun, and the third is beside them.
+async function shade(page, engine) {
+  const sun = unit([0.5, 1, 0.2]), places = [[0, 0, 0], scaled(sun, 6), [20, 0, 0]];
+  const [bare, meshes, instances] = await ask(page, 'shadeOf', { file: 'cloud.glb', places, sun });
+  const shares = meshes.map((light, i) => light / bare[i]), off = Math.max(...instances.map((light, i) => Math.abs(light - meshes[i])));
+  demand(shares[0] < 0.6 && shares[0] > 0.05 && Math.abs(shares[1] - 1) < 1e-3 && Math.abs(shares[2] - 1) < 1e-3 && off < 1e-3 * bare[0],
+    `${engine}: of three clouds the one behind another has ${percent(shares[0])} of its light, the others ${percent(shares[1])} and ` +
+    `${percent(shares[2])}; instances differ from meshes by ${off.toExponential(1)}`);
+}
+
+// Below the cloud the grid's last slice is the picture that `cloudbake shadow` draws.
+async function shadeOnTheGround(page, engine) {
+  const side = 48;
+  run('shadow', 'cloud.glb', '--sun', '120,50', '--size', String(side), '-o', 'cast.png');
+  const frame = JSON.parse(readFileSync(join(folder, 'cast.json'), 'utf8')), values = await pngValues(page, join(folder, 'cast.png'));
+  const pixels = Array.from({ length: 144 }, (_, i) => [4 * (i % 12) + 2, 4 * Math.floor(i / 12) + 2]);
+  const wanted = pixels.map(([x, y]) => values[3 * (y * side + x)] / 255);
+  const places = pixels.map(([x, y]) => inFrame(frame, (x + 0.5) / side, 1 - (y + 0.5) / side, frame.bottom - 1));
+  const found = await ask(page, 'shadowAt', { cloud: 'cloud.glb', sun: frame.to_sun, places });
+  const rms = Math.sqrt(found.reduce((sum, share, i) => sum + (share - wanted[i]) ** 2, 0) / found.length);
+  demand(rms < 0.08 && Math.min(...found) < 0.3, `${engine}: the shade of a grid on a floor is the shadow's picture, rms ${rms.toFixed(3)}`);
+}
+
 // A picture of four shares of light, and the frame of a sun from a side; the floor is in it, beside it, and above the cloud's bottom.
 async function shadows(page, engine, more = {}) {
   const to_sun = unit([0.5, 1, 0.2]), right = unit([1, -0.5, 0]), up = unit([to_sun[1] * right[2] - to_sun[2] * right[1],
@@ -213,6 +236,10 @@ await testPage(folder, async page => {
     await fades(page, engine);
     await shadowOfTheCloud(page, engine);
     await shadows(page, engine);
+    if (engine === 'three.js') {
+      await shade(page, engine);
+      await shadeOnTheGround(page, engine);
+    }
     if (engine === 'Babylon.js') await shadows(page, engine, { physical: true });
     await nearPainted(page, engine);
     await levels(page, engine);

@@ -1,9 +1,10 @@
 // Draws triangles and assets with settings of CloudMaterial in three.js, for looks.mjs.
-import { BufferAttribute, BufferGeometry, Color, DepthTexture, DirectionalLight, FloatType, Mesh, MeshBasicMaterial, MeshStandardMaterial,
-  PerspectiveCamera, PlaneGeometry, PointLight, Scene, SpotLight, WebGLRenderTarget } from 'three';
+import { BufferAttribute, BufferGeometry, Color, DepthTexture, DirectionalLight, FloatType, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial,
+  MeshStandardMaterial, PerspectiveCamera, PlaneGeometry, PointLight, Scene, SpotLight, Vector3, WebGLRenderTarget } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudLevels, CloudMaterial, CloudShadow, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
 import { PaintedClouds } from 'cloudbake-materials/three/painted';
+import { CloudShade } from 'cloudbake-materials/three/shade';
 import { changesOf } from './changes.mjs';
 import { canvasOf, colorOf, rendererOf } from './three_page.mjs';
 
@@ -65,10 +66,17 @@ function depthOf(renderer, eye, away, [width, height]) {
   return target.depthTexture;
 }
 
-// The red of a lit floor below the eye at places of the world, with the shadow of a picture over that without.
-export async function shadowAt({ picture, strength, places, sun }) {
+// The shade of the grid of a cloud.
+async function shadeOfCloud(file, sun) {
+  const { scene } = await loaderOf().loadAsync(file), shade = new CloudShade().add(scene);
+  shade.update(new Vector3(...sun));
+  return shade;
+}
+
+// The red of a lit floor below the eye at places of the world, with the shadow of a picture or the shade of a cloud over that without.
+export async function shadowAt({ picture, cloud, strength, places, sun }) {
   const ratio = [];
-  for (const shadow of [null, await CloudShadow.load(picture, strength)]) {
+  for (const shadow of [null, await (cloud ? shadeOfCloud(cloud, sun) : CloudShadow.load(picture, strength))]) {
     const size = [65, 65], renderer = rendererOf(size), scene = new Scene(), eye = new PerspectiveCamera(60, 1, 0.1, 100);
     const light = new DirectionalLight(0xffffff, 2), material = new MeshStandardMaterial({ roughness: 1 });
     light.position.set(...sun);
@@ -90,6 +98,46 @@ export async function shadowAt({ picture, strength, places, sun }) {
   }
   return ratio[1].map((value, i) => value / ratio[0][i]);
 }
+
+// The mean light of the sun on clouds at places, seen one by one from the sun's side: without shade, shaded as meshes, and as instances.
+export async function shadeOf({ file, places, sun }) {
+  const gltf = await loaderOf().loadAsync(file), black = new Color(0, 0, 0), size = [64, 64], found = [], geometry = meshOf(gltf).geometry;
+  const material = gltf.userData.cloudMaterial, target = new WebGLRenderTarget(...size, { type: FloatType });
+  material.setValues({ sunDirection: new Vector3(...sun), sunColor: new Color(1, 1, 1), ambientSky: black, ambientGround: black, tone: 'renderer',
+    phase: { share: 0 }, fog: false });
+  for (const kind of ['none', 'meshes', 'instances']) {
+    const scene = new Scene(), renderer = rendererOf(size), rows = new Float32Array(4 * size[0] * size[1]);
+    const instances = new InstancedMesh(geometry.clone(), material, places.length);
+    places.forEach((place, i) => {
+      const mesh = new Mesh(geometry, material);
+      mesh.position.set(...place);
+      instances.setMatrixAt(i, new Matrix4().makeTranslation(...place));
+      if (kind !== 'instances') scene.add(mesh);
+    });
+    if (kind === 'instances') scene.add(instances);
+    material.cloudShade = null;
+    if (kind !== 'none') new CloudShade().add(scene).update(new Vector3(...sun));
+    const eye = new PerspectiveCamera(30, 1, 0.1, 100);
+    found.push(places.map(([x, y, z]) => {
+      eye.position.set(x + 4 * sun[2], y, z - 4 * sun[0]);
+      eye.lookAt(x, y, z);
+      renderer.setRenderTarget(target);
+      renderer.setClearColor(0, 0);
+      renderer.clear();
+      renderer.render(scene, eye);
+      renderer.readRenderTargetPixels(target, 0, 0, ...size, rows);
+      renderer.setRenderTarget(null);
+      return rows.reduce((sum, value, i) => sum + (i % 4 === 0 ? value : 0), 0) / (size[0] * size[1]);
+    }));
+  }
+  return found;
+}
+
+const meshOf = ({ scene }) => {
+  let found = null;
+  scene.traverse(object => { if (object.isMesh) found ??= object; });
+  return found;
+};
 
 const loaderOf = () => new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser, { tone: 'cloudbake' }));
 

@@ -2,12 +2,16 @@
 
 import { NOISE, NOISE_CLOUDS } from './layer_files.js';
 
+const NO_ROW = [0, 0, 0, 0];
+
 export class LayerShadows {
   /** @param {SceneLayers} layers */
   constructor(layers) {
     this.layers = layers;
     this.gpu = layers.renderer.gpu;
     this.count = 0;  // of mesh clouds that cast one
+    this.upload([]);
+    this.takeGrid({ grid: null, key: '' });
   }
 
   // The shadows of the mesh clouds as textures.
@@ -25,13 +29,28 @@ export class LayerShadows {
     this.gpu.upload('shadow frames', { width: 6, height: depth }, gl.RGBA32F, gl.RGBA, frames);
   }
 
-  get values() { return { shadow_sums: 'shadow sums', shadow_frames: 'shadow frames', shadow_count: this.count }; }
+  // The grid of clouds that shade each other, as a texture; its clouds are not among the others.
+  takeGrid({ grid, key }) {
+    const grid_key = grid && this.layers.settings.has_shadows ? key : 'none';
+    if (grid_key === this.gridKey) return;
+    this.gridKey = grid_key;
+    if (grid_key === 'none') {
+      this.gpu.uploadShares('shade shares', [1, 1, 1], Float32Array.of(1));
+      this.grid = { has_shade: false, shade_x: NO_ROW, shade_y: NO_ROW, shade_z: NO_ROW };
+      return;
+    }
+    const { count, shares } = grid.pastAll, [shade_x, shade_y, shade_z] = grid.frame.rows;
+    this.gpu.uploadShares('shade shares', count, shares);
+    this.grid = { has_shade: true, shade_x, shade_y, shade_z };
+  }
+
+  get values() { return { shadow_sums: 'shadow sums', shadow_frames: 'shadow frames', shadow_count: this.count, shade_shares: 'shade shares', ...this.grid }; }
 
   // The passes of all things that cast a shadow: [kind, index, program, values].
   *passes() {
     const { gpu, layers: { settings, ground, noiseClouds, values, renderer } } = this;
     if (!settings.has_shadows) return;
-    if (this.count) yield ['mesh', 0, gpu.program('pass_mesh.frag', ['mesh_shadows']), this.values];
+    if (this.count || this.grid.has_shade) yield ['mesh', 0, gpu.program('pass_mesh.frag', ['mesh_shadows']), this.values];
     if (ground) yield ['terrain', 0, gpu.program('pass_terrain.frag', [...NOISE, 'terrain']), values];
     for (const { kind, index, settings: own } of noiseClouds) {
       const { struct, pass, files } = NOISE_CLOUDS[kind], shadow_strength = renderer.scene.shadows.strength;

@@ -143,6 +143,42 @@ TEST(ShadowPicture, IsTheShadowOfScenes) {
   EXPECT_EQ(shadow.shareAt(above), 1.0F);
 }
 
+// Two balls, one of which is partly behind the other: the shadows of a scene multiply each other.
+TEST(ShadowPicture, OfASceneIsTheTransmittanceOfItsClouds) {
+  const BakedMesh ball = darkCloud(ballMesh(1.5F, 5), 0.6F);
+  Warnings warnings;
+  const ShadowCaster caster = shadowCasterOf(ball, warnings).value();
+  const Vec3 to_sun = directionFromAngles(130, 40), second = to_sun * -7.0F + Vec3{1, 0.2F, 0.5F};
+  for (const auto& [shade, bound] : {std::pair(CloudShade::kEach, 0.02), {CloudShade::kGrid, 0.05}}) {
+    Scenery scenery;
+    scenery.scene.light.sky.to_sun = to_sun;
+    scenery.scene.clouds.resize(2);
+    scenery.scene.shadows.cloud_shade = shade;
+    scenery.instances = {{&ball, {}, &caster}, {&ball, placement(second, {}, {1, 1, 1}), &caster}};
+    const ShadowPicture picture = drawShadow(scenery, {128, std::nullopt});
+    double squares = 0, darkest = 1;
+    for (int row = 0; row < 128; ++row)
+      for (int column = 0; column < 128; ++column) {
+        const float x = (float(column) + 0.5F) / 128 - 0.5F, y = 0.5F - (float(row) + 0.5F) / 128;
+        const Vec3 at =
+            picture.frame.origin + picture.frame.right * (x * picture.frame.width) + picture.frame.up * (y * picture.frame.height);
+        double chords = 0;
+        for (const Vec3 center : {Vec3{}, second}) {
+          const double across = length(cross(at - center, to_sun));
+          chords += across < 1.5 ? 2 * std::sqrt(1.5 * 1.5 - across * across) : 0;
+        }
+        const double share = double(picture.transmittance[size_t(row) * 128 + size_t(column)]), off = share - std::exp(-0.6 * chords);
+        squares += off * off, darkest = std::min(darkest, share);
+      }
+    EXPECT_LT(std::sqrt(squares / (128 * 128)), bound);
+    EXPECT_NEAR(darkest, std::exp(-0.6 * 5.8), 0.03);
+    for (int i = 0; i < 128; ++i)
+      for (const int at : {i, 127 * 128 + i, i * 128, i * 128 + 127}) ASSERT_EQ(picture.transmittance[size_t(at)], 1.0F);
+    EXPECT_FALSE(nlohmann::json::parse(encodeShadow(picture).frame).contains("sigma"));
+  }
+  EXPECT_THROW(drawShadow(Scenery{}, {16, std::nullopt}), InputError);
+}
+
 TEST(ShadowPicture, IsTheSameForAnyNumberOfThreads) {
   const BakedMesh ball = darkCloud(ballMesh(1, 3), 2);
   const ShadowPicture all = drawShadow(ball, directionFromAngles(20, 40), 40, std::nullopt);

@@ -165,7 +165,7 @@ TEST(SceneKeys, EachFieldHasOne) {
   expectKeys(skyKeys(), {"to_sun", "ramp", "colors", "sun_disc", "disc", "smooth_disc", "moon", "stars", "aurora"});
   expectKeys(colorKeys());
   expectKeys(fogKeys());
-  expectKeys(shadowKeys());
+  expectKeys(shadowKeys(), {"cloud_shade"});
   expectKeys(phaseKeys());
   expectKeys(lampKeys());
   expectKeys(lightningKeys());
