@@ -184,31 +184,26 @@ uniform float impostor_scale;  // world units per pixel of the picture; of a cam
 uniform vec4 impostor_atlas;
 
 // The place of a corner in the world. 'axis' leads from the scene to a camera without perspective, else 'eye' is its place.
-vec3 impostorCorner(vec2 corner, mat4 to_world, vec3 eye, vec3 axis, bool has_perspective) {
-  mat3 linear = mat3(to_world), to_own = inverse(linear);
+vec3 cornerInWorld(vec2 corner, mat4 to_world, vec3 eye, vec3 axis, bool has_perspective) {
+  mat3 linear = mat3(to_world);
   vec3 center = (to_world * vec4(impostor_center, 1.0)).xyz;
-  vec3 own_eye = to_own * (has_perspective ? eye - center : axis) / impostor_radius;
-  float away = length(own_eye);
-  vec3 to_eye = own_eye / away, right = impostorRight(to_eye);
-  float reach = 1.1;
-  if (has_perspective) {
-    // Within the ball nothing is drawn.
-    reach = away > 1.0 ? impostorReachOfSquare(away) : 0.0;
-  }
-  impostor_to_eye = to_eye;
-  impostor_place = (right * corner.x + cross(to_eye, right) * corner.y) * reach;
-  impostor_ray = has_perspective ? impostor_place - own_eye : -to_eye;
+  vec3 own_eye = inverse(linear) * (has_perspective ? eye - center : axis) / impostor_radius;
+  impostor_to_eye = normalize(own_eye);
+  impostor_place = impostorCorner(corner, own_eye, has_perspective);
+  impostor_ray = impostorRay(impostor_place, own_eye, has_perspective);
   impostor_right = linear[0];
   impostor_up = linear[1];
   impostor_back = linear[2];
   float size = pow(abs(determinant(linear)), 1.0 / 3.0) * impostor_radius;
-  impostor_texels = (has_perspective ? length(eye - center) : 1.0) * impostor_scale / (2.0 * size) * impostor_atlas.y;
+  impostor_texels = impostorTexels((has_perspective ? length(eye - center) : 1.0) * impostor_scale, size, impostor_atlas.y);
   return center + linear * (impostor_place * impostor_radius);
 }
 `;
 
 // The colour of a pixel, which is lit, and its opacity.
 export const IMPOSTOR_PIXEL = `
+uniform highp sampler2D impostor_lobe, impostor_rest;
+uniform vec4 impostor_atlas;
 #include "impostor.glsl"
 #include "impostor_atlas.glsl"
 #include "lobe.glsl"

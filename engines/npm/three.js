@@ -127,7 +127,7 @@ void main() {
     to_world *= batchingMatrix;
   #endif
   vec3 axis = vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]);
-  vec3 place = impostorCorner(position.xy, to_world, cameraPosition, axis, !isOrthographic);
+  vec3 place = cornerInWorld(position.xy, to_world, cameraPosition, axis, !isOrthographic);
   vec4 mvPosition = viewMatrix * vec4(place, 1.0);
   gl_Position = projectionMatrix * mvPosition;
   #include <logdepthbuf_vertex>

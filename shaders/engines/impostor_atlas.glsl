@@ -1,6 +1,6 @@
-// Reads the atlas of an impostor as preview/mesh_clouds/impostor.cpp does. Needs impostor.glsl.
-uniform highp sampler2D impostor_lobe, impostor_rest;  // linear values, without premultiplied alpha, clamped, with mip levels
-uniform vec4 impostor_atlas;  // views, pixels to a side of a frame, the last mip level, the thickness of the value 1.0
+// Reads the atlas of an impostor as preview/mesh_clouds/impostor.cpp does. Needs impostor.glsl, and before it the uniforms
+//   sampler2D impostor_lobe, impostor_rest: linear values, without premultiplied alpha, clamped, with mip levels
+//   vec4 impostor_atlas: views, pixels to a side of a frame, the last mip level, the thickness of the value 1.0
 
 // Adds what a ray sees in a frame: lobes times weights; the light, the distance from 'place' in lengths of the ray, and the opacity times
 // the weight of the frame.

@@ -101,8 +101,30 @@ vec4 impostorMean(vec4 sum, float weights) {
   return vec4(direction, sum.w / weights);
 }
 
-// Half of the side of a square through the center that covers the ball; 'away': from the center to the eye, in radii, over 1.0. What
-// frames show beyond the ball needs a margin.
-float impostorReachOfSquare(float away) {
-  return 1.1 * away / sqrt(away * away - 1.0);
+// A corner of the square on which the impostor is drawn: through the center, turned to the eye, and so large that the ball is in it. 'own_eye'
+// is the place of the eye, or without perspective any vector towards the camera. Within the ball the square has no size. What frames show
+// beyond the ball needs the margin of 1.1.
+vec3 impostorCorner(vec2 corner, vec3 own_eye, bool has_perspective) {
+  float away = length(own_eye);
+  vec3 to_eye = own_eye / away;
+  vec3 right = impostorRight(to_eye);
+  float reach = 1.1;
+  if (has_perspective) {
+    reach = away > 1.0 ? 1.1 * away / sqrt(away * away - 1.0) : 0.0;
+  }
+  return (right * corner.x + cross(to_eye, right) * corner.y) * reach;
+}
+
+// The ray through a place of that square.
+vec3 impostorRay(vec3 place, vec3 own_eye, bool has_perspective) {
+  if (has_perspective) {
+    return place - own_eye;
+  }
+  return -normalize(own_eye);
+}
+
+// Texels of the finest level per pixel of the picture. 'side': of a pixel in the distance of the center, and 'radius', both in the world;
+// 'pixels': to a side of a frame.
+float impostorTexels(float side, float radius, float pixels) {
+  return side / (2.0 * radius) * pixels;
 }

@@ -10,7 +10,9 @@ import { folder, load, openEngine, packages, percent, run, serve, viewOf } from 
 const { Euler, Matrix4, Quaternion, Vector3 } = await import('three');
 
 const NEAR = 0.995;  // of the values are within 2 of preview's
-const CONTROL = 0.98;  // with a mistake fewer are
+// Of the values of clouds fewer: a graphics card filters with 8 bits, and stores smaller pictures of the atlas with 8 bits.
+const NEAR_IN_CLOUDS = { 'one impostor': 0.99, 'six impostors, turned, stretched and mirrored': 0.92 };
+const CONTROL = 0.9;  // with a mistake fewer are
 // What the image chain adds is left out, and the sun is that of CloudMaterial.
 const HEAD = `[light]
 phase = 0.3
@@ -24,13 +26,15 @@ far_width = 0
 depth_spread = 0
 swirl_strength = 0
 detail_shrink = 0
+detail_darkening = 0
+dark = 1
 `;
 const PHASE = { share: 0.3, asymmetry: 0.7, limit: 6 };
 const VIEWS = [['20,-8', '130,28'], ['110,25', '60,40'], ['250,60', '200,12'], ['5,-75', '20,70']];
 // Position, rotation and scale: turned, stretched, mirrored, and far away.
 const ONE = [{}], SEVERAL = [{ position: [0, 0, 0], rotation: [20, 50, 0], scale: [1.3, 0.7, 1] },
-  { position: [1.6, 0.3, -0.6], rotation: [0, 130, 0], scale: [-0.8, 0.8, 0.8] }, { position: [-1.5, -0.2, -4], scale: [0.6, 0.6, 0.6] },
-  { position: [2, 1.5, -14], rotation: [0, 200, 0] }, { position: [-3, 2, -25] }, { position: [-1.5, 0.2, 1.2], scale: [0.4, 0.4, 0.4] }];
+  { position: [8, 1.5, -3], rotation: [0, 130, 0], scale: [-0.8, 0.8, 0.8] }, { position: [-3.1, 1.2, -8.4], scale: [0.9, 0.9, 0.9] },
+  { position: [10, 7, -40], rotation: [0, 200, 0] }, { position: [-15, 10, -80] }, { position: [-6, 1, 4], scale: [0.4, 0.4, 0.4] }];
 
 const sceneOf = (clouds, extinction) => HEAD.replace('EXTINCTION', extinction) + clouds.map(one =>
   `[[cloud]]\nfile = "far/impostor.glb"\n${Object.entries(one).map(([key, values]) => `${key} = [${values.join(', ')}]\n`).join('')}`).join('');
@@ -79,7 +83,7 @@ async function pictures(page, extinction) {
       await place(page, clouds, 'nodes');
       const values = await draw(page, view), inside = insideOf(values, without);
       const all = compare(bits(values), truth), own = compare(bits(values), truth, inside);
-      demand(all.near >= NEAR && own.near >= NEAR && own.all > 3000, `${name} by a camera at ${angles[0]}, sun at ${angles[1]}: ` +
+      demand(all.near >= NEAR && own.near >= NEAR_IN_CLOUDS[name] && own.all > 1000, `${name} by a camera at ${angles[0]}, sun at ${angles[1]}: ` +
         `${percent(all.near)} of values are within 2 of preview's, ${percent(own.near)} of the ${own.all} of a cloud, off by ` +
         `${own.largest.toFixed(1)} at most`);
       if (angles !== VIEWS[0]) continue;
@@ -94,8 +98,7 @@ async function pictures(page, extinction) {
         const found = compare(await draw(page, view), values.map(value => value)).largest;
         demand(found < 1e-3, `${kind}: values are those of nodes, off by ${found.toExponential(1)} at most`);
         if (kind !== 'InstancedMesh') continue;
-        await place(page, [...clouds].sort(() => -1).reverse(), kind);
-        await place(page, [...clouds].reverse(), kind);
+        await place(page, clouds, kind);
         const mixed = compare(await draw(page, { ...view, unsorted: true }), values).largest;
         const sorted = compare(await draw(page, view), values).largest;
         demand(mixed > 0.01 && sorted < 1e-3,
@@ -107,15 +110,16 @@ async function pictures(page, extinction) {
 // An orthographic camera sees what a far one with perspective sees.
 async function parallel(page, extinction) {
   const { view } = await subjectOf(page, ONE, VIEWS[0], extinction), { camera } = view;
-  await place(page, ONE, 'nodes');
   const away = 400 * camera.distance, half = camera.distance * Math.tan(camera.fov * Math.PI / 360);
   const from = camera.at.map((x, i) => x + (camera.from[i] - x) * away / camera.distance);
-  const fov = 2 * Math.atan(half / away) * 180 / Math.PI, far = { ...view, camera: { ...camera, from, fov, distance: away } };
-  const perspective = bits(await draw(page, far)), ortho = bits(await draw(page, { ...far, ortho: half }));
+  const far = { ...view, camera: { ...camera, from, fov: 2 * Math.atan(half / away) * 180 / Math.PI, distance: away } };
   await place(page, [], 'nodes');
-  const inside = insideOf(await draw(page, { ...far, ortho: half }), (await draw(page, { ...far, ortho: half })).map(() => -1));
-  const { near, all } = compare(ortho.filter((_, i) => inside(i) && perspective[i] > 0), perspective, i => i < 0 || inside(i));
-  demand(all > 0 && near > 0, `an orthographic camera draws too: ${percent(near)}`);
+  const without = await draw(page, far);
+  await place(page, ONE, 'nodes');
+  const perspective = await draw(page, far), inside = insideOf(perspective, without);
+  const { near, all } = compare(bits(await draw(page, { ...far, ortho: half })), bits(perspective), inside);
+  demand(all > 3000 && near >= 0.99,
+    `an orthographic camera shows what a far one does: ${percent(near)} of ${all} values are within 2, in the cloud`);
 }
 
 async function file(page) {

@@ -1,9 +1,9 @@
 // Draws lobe impostors in three.js, for impostor.mjs.
-import { BatchedMesh, Color, FloatType, InstancedMesh, Matrix4, Mesh, NoToneMapping, OrthographicCamera, PerspectiveCamera, RGBAFormat, Scene,
+import { BatchedMesh, FloatType, InstancedMesh, Matrix4, Mesh, NoToneMapping, OrthographicCamera, PerspectiveCamera, RGBAFormat, Scene,
   Vector3, WebGLRenderTarget } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudSky, CloudbakeLoaderPlugin, sortImpostors } from 'cloudbake-materials/three';
-import { canvasOf, colorOf, rendererOf } from './three_page.mjs';
+import { colorOf, rendererOf } from './three_page.mjs';
 
 // The file's scene as it is loaded, with a sky.
 export async function load(file, parameters) {
@@ -70,15 +70,3 @@ export function draw(subject, view) {
   return Array.from({ length: 3 * width * height }, (_, v) =>
     read[4 * (width * (height - 1 - Math.floor(v / 3 / width)) + Math.floor(v / 3) % width) + v % 3]);
 }
-
-// The canvas with the tone of `preview`.
-export function drawToCanvas(subject, view) {
-  const eye = prepare(subject, view), own = rendererOf(view.size);
-  own.toneMapping = NoToneMapping;
-  for (const material of [subject.material, subject.sky.material]) material.tone = 'cloudbake';
-  own.render(subject.scene, eye);
-  for (const material of [subject.material, subject.sky.material]) material.tone = 'renderer';
-  return canvasOf(own);
-}
-
-export const isColor = color => color instanceof Color;

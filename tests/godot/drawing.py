@@ -118,7 +118,7 @@ def glsl_of(shader, stage, renderer):
     other = "fragment" if stage == "vertex" else "vertex"
     text = re.sub(rf"void {other}\(\) \{{.*?\n\}}\n", "", text, flags=re.S)
     text = text.replace("varying ", "out " if stage == "vertex" else "in ").replace(f"void {stage}()", "void main()")
-    return re.sub(r" : hint_\w+(\([^)]*\))?(, \w+)*", "", text)
+    return re.sub(r" : (hint|filter)_\w+(\([^)]*\))?(, \w+)*", "", text)
 
 
 def compile_godot4(kit, folder):
@@ -139,6 +139,7 @@ def compile_godot4(kit, folder):
 def as_godot3(shader):
     """A shader of Godot 4 in the language of Godot 3: other names, no arrays, no preprocessor, the depths of OpenGL."""
     shader = re.sub(r"uniform sampler2D screen_depth.*;\n", "", SETS.sub("", shader)).replace("screen_depth", "DEPTH_TEXTURE")
+    shader = re.sub(r" : filter_\w+, repeat_disable;", ";", shader)
     shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
     for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"),
                      ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2")):
