@@ -105,7 +105,8 @@ def picture(file):
 
 SETS = re.compile(r"\tvec2 sets\[8\] = \{ .* \};\n")
 # What Godot gives to the stages of a shader, as GLSL.
-GIVEN = {"vertex": "const mat4 MODEL_MATRIX = mat4(1.0); in vec3 NORMAL, VERTEX; in vec2 UV, UV2; in vec4 CUSTOM0, CUSTOM1, CUSTOM2;"
+GIVEN = {"vertex": "const mat4 MODEL_MATRIX = mat4(1.0), INV_VIEW_MATRIX = mat4(1.0), PROJECTION_MATRIX = mat4(1.0);"
+                   "const vec2 VIEWPORT_SIZE = vec2(1.0); vec3 VERTEX; in vec3 NORMAL; in vec2 UV, UV2; in vec4 CUSTOM0, CUSTOM1, CUSTOM2;"
                    "out vec4 POSITION;",
          "fragment": "const mat4 INV_VIEW_MATRIX = mat4(1.0), INV_PROJECTION_MATRIX = mat4(1.0); in vec3 VERTEX, NORMAL, VIEW;"
                      "in vec2 SCREEN_UV; in vec4 FRAGCOORD; uniform float TIME; out vec3 ALBEDO; out float ALPHA; out vec4 COLOR;"}
