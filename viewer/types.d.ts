@@ -37,6 +37,7 @@ interface Arrays {
   harmonics: Float32Array; harmonicsPerVertex: number;
   triangles: Uint16Array | Uint32Array;
   fields?: Uint8Array[];
+  impostors?: { lobe: Uint8Array; rest: Uint8Array }[];  // three bytes per pixel of the atlas
   layers?: { moon?: { width: number; height: number; bytes: Uint8Array }; lattices: Lattice[] };
 }
 
@@ -44,6 +45,12 @@ interface Arrays {
 interface Lattice { origin: Vec3; cell_size: number; cells: [number, number, number]; coefficients: number; values: Float32Array }
 
 interface Caster { origin: Vec3; cell_size: number; cells: [number, number, number]; fractions: Uint8Array }
+
+/** A placed impostor. Center and radius are those of its ball in the world; the matrices are columns, 'to_own' leads to radii. */
+interface PlacedImpostor {
+  picture: number; atlas: number[]; center: Vec3; radius: number; to_own: number[]; to_world: number[];
+  exponent: number; extinction: number; gains: boolean;
+}
 
 /** A lamp, or flashes of lightning: of every 'every' seconds one, of which each stroke has a start and a strength. */
 interface Lamp {
@@ -82,6 +89,7 @@ interface Scene {
   shadows: { strength: number; softness: number };
   lamps?: Lamp[];
   parts: Part[]; corners: Vec3[];
+  impostors?: PlacedImpostor[];
   mesh?: any;
   scattered?: ScatteredClouds;
   keys?: { table: string; name: string; path: (string | number)[]; limits: Limits }[];

@@ -1,6 +1,6 @@
 // Lobe impostors: which frames of the atlas are seen, where a ray meets them, and what their texels mean. The same as core/impostor.h and
 // preview/mesh_clouds/impostor.cpp. Places are in the impostor's own space, from the center of its ball, in radii of the ball. Textures
-// are read by whoever calls this; shaders/engines/impostor_atlas.glsl does it.
+// are read by whoever calls this; shaders/common/impostor_atlas.glsl does it.
 
 float octahedralSign(float x) {
   return x < 0.0 ? -1.0 : 1.0;
