@@ -22,7 +22,7 @@ for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', en
 // The texts of the kit that are evaluated or compiled here. tests/browser/unity.mjs compiles and runs the scripts and the chain.
 const used = new Set(['URP/CloudbakeFeature.cs', 'URP/Cloudbake.Universal.asmdef', 'Editor/CloudbakeMaterials.cs',
   'Editor/Cloudbake.Editor.asmdef', 'Cloudbake.asmdef', 'CloudbakeAsset.cs', 'CloudbakeCamera.cs', 'CloudbakeChain.cs',
-  'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
+  'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeImpostor.cs', 'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
 const kit = name => (used.add(name), readFileSync(join(folder, name), 'utf8'));
 
 // --- What is evaluated of an engine ---
@@ -211,7 +211,20 @@ function compileUnity() {
       for (const [stage, entry] of [['vert', vertex], ['frag', 'fragment']])
         translated(define + own.replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting|"AutoLight)).*$/gm, '')
           .replace(/^ *#include "CloudbakeLook.hlsl"/m, () => look), stage, entry);
+  compileImpostor(stub);
   demand(programs.length === 3, 'the passes of Cloudbake.shader compile: of URP, and ForwardBase and ForwardAdd of the built-in pipeline');
+}
+
+// Its square, and the atlas that it reads.
+function compileImpostor(stub) {
+  const text = kit('unity/CloudbakeImpostor.shader'), own = kit('unity/CloudbakeImpostor.hlsl').replace(/^#include "CloudbakeLobe.hlsl"$/m,
+    () => kit('unity/CloudbakeLobe.hlsl'));
+  const programs = [[/HLSLPROGRAM\n(.*?)ENDHLSL/s, 'urp'], [/CGPROGRAM\n(.*?)ENDCG/s, 'builtin']];
+  for (const [part, name] of programs)
+    for (const [stage, entry] of [['vert', 'vertex'], ['frag', 'fragment']])
+      translated(stub(name) + text.match(part)[1].replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting)).*$/gm, '')
+        .replace(/^ *#include "CloudbakeImpostor.hlsl"/m, () => own), stage, entry);
+  demand(true, 'CloudbakeImpostor.shader compiles, for URP and for the built-in pipeline');
 }
 
 // The vertices of the asset, its two sets.
