@@ -56,9 +56,9 @@ Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
 function nodeOf(head, name) {
   const before = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct (\w+) \{.*?^\};\n/gms, (text, struct) => {
     before.push(struct !== 'Cloudbake' ? text
-      : text.split('\n').slice(1, -2).join('\n').replace(/^(?!Texture2D)(\w+ \w+(, \w+)*;)/gm, 'static $1'));
+      : text.split('\n').slice(1, -2).join('\n').replace(/^(?!Texture2D|SamplerState)(\w+ \w+(, \w+)*;)/gm, 'static $1'));
     return '';
-  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted);$/gm, '')
+  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted|\w+Picture(?:Sampler)?);$/gm, '')
     .replace(/\bcloudbake\./g, '');
   return `${before.join('\n')}\n${head} {\n${body}}\n`;
 }
@@ -72,6 +72,8 @@ const CUSTOM_NODES = {
     float2 Cone`],
   ShadowOfCloud: ['float', `Texture2D<float4> Shadow, SamplerState ShadowSampler, float3 Place, float3 Origin, float3 Right, float3 Up,
     float3 ToSun, float Width, float Height, float Top, float Bottom, float Strength`],
+  Impostor: ['float3', `float3 Place, float3 Eye, float3 ToSun, float3 Up, float Texels, float4 Atlas, float2 Lobe,
+    Texture2D<float4> LobePicture, SamplerState LobePictureSampler, Texture2D<float4> RestPicture, SamplerState RestPictureSampler`],
   SoftOpacity: ['float2', `float3 Normal, float3 View, float3 OwnPlace, float Seconds, float2 Pixel, float Along, float Away, float Solid,
     float2 Rim, float4 Noise, float SoftDistance, float2 NearFade, float2 FarFade`],
   'painted/Channels': ['float3', 'float2 Light, float3 Normal, float3 ToSun, float Along, float2 DepthRange'],
@@ -222,7 +224,7 @@ function compileImpostor(stub) {
   const programs = [[/HLSLPROGRAM\n(.*?)ENDHLSL/s, 'urp'], [/CGPROGRAM\n(.*?)ENDCG/s, 'builtin']];
   for (const [part, name] of programs)
     for (const [stage, entry] of [['vert', 'vertex'], ['frag', 'fragment']])
-      translated(stub(name) + text.match(part)[1].replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting)).*$/gm, '')
+      translated(stub(name) + stub('impostor') + text.match(part)[1].replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting)).*$/gm, '')
         .replace(/^ *#include "CloudbakeImpostor.hlsl"/m, () => own), stage, entry);
   demand(true, 'CloudbakeImpostor.shader compiles, for URP and for the built-in pipeline');
 }

@@ -10,10 +10,6 @@ cbuffer PerFrame {
 };
 #define UNITY_MATRIX_M unity_ObjectToWorld
 #define UNITY_MATRIX_V unity_MatrixV
-float4x4 unity_WorldToObject, unity_MatrixP, unity_MatrixVP;
-#define UNITY_MATRIX_P unity_MatrixP
-#define UNITY_MATRIX_VP unity_MatrixVP
-float4 _ScreenParams, unity_OrthoParams;
 #define UNITY_VERTEX_INPUT_INSTANCE_ID
 #define UNITY_SETUP_INSTANCE_ID(input)
 #define UNITY_TRANSFER_INSTANCE_ID(input, output)

@@ -2,11 +2,6 @@
 float4x4 unity_ObjectToWorld;
 float3 _WorldSpaceCameraPos;
 #define UNITY_MATRIX_M unity_ObjectToWorld
-float4x4 unity_WorldToObject, unity_MatrixV, unity_MatrixP;
-#define UNITY_MATRIX_I_M unity_WorldToObject
-#define UNITY_MATRIX_V unity_MatrixV
-#define UNITY_MATRIX_P unity_MatrixP
-float4 _ScreenParams, unity_OrthoParams;
 #define UNITY_VERTEX_INPUT_INSTANCE_ID
 #define UNITY_SETUP_INSTANCE_ID(input)
 #define CBUFFER_START(name) cbuffer name {
