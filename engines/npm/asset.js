@@ -74,10 +74,12 @@ export function settingsOf(json) {
 export function impostorSettingsOf(json) {
   const info = json.asset?.extras?.cloudbake;
   if (info?.layout !== 'lobe-impostor') return null;
-  if (info.version !== 1) throw new Error(`the impostor has version ${info.version} of its layout, not 1: take the package of its cloudbake`);
+  if (info.version !== 1)
+    throw new Error(`the impostor has version ${info.version} of its layout, not 1: take the package of its cloudbake`);
   const textureOf = name => json.textures?.findIndex(({ source }) => json.images?.[source]?.name === name) ?? -1;
   const lobe = textureOf('lobe'), rest = textureOf('rest');
-  if (lobe < 0 || rest < 0) throw new Error('the impostor has lost the pictures of its atlas: take the file that `cloudbake impostor` wrote');
+  if (lobe < 0 || rest < 0)
+    throw new Error('the impostor has lost the pictures of its atlas: take the file that `cloudbake impostor` wrote');
   return {
     exponent: constantOf(info, 'exponent'), extinction: constantOf(info, 'extinction'), ofVolume: info.gains === true,
     center: info.center, radius: info.radius, atlas: [info.views, info.frame, lastLevelOf(info.frame), info.thickest],

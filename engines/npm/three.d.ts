@@ -1,5 +1,5 @@
-import type { BufferGeometry, Camera, Color, ColorRepresentation, DepthTexture, DirectionalLight, InstancedMesh, LOD, Material, Mesh, PointLight,
-  ShaderMaterial, ShaderMaterialParameters, SpotLight, Texture, Vector3 } from 'three';
+import type { BufferGeometry, Camera, Color, ColorRepresentation, DepthTexture, DirectionalLight, InstancedMesh, LOD, Material, Mesh,
+  PointLight, ShaderMaterial, ShaderMaterialParameters, SpotLight, Texture, Vector3 } from 'three';
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import type { ImpostorLobes, Lobes, Phase, ShadowFrame, SkyColors, Sun } from './settings.js';
 

@@ -1,6 +1,7 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
-import { Box3, BufferAttribute, BufferGeometry, ClampToEdgeWrapping, Color, DoubleSide, LOD, LinearFilter, LinearMipmapLinearFilter, Matrix3,
-  Matrix4, Mesh, NoColorSpace, ShaderMaterial, Sphere, TextureLoader, UniformsLib, UniformsUtils, Vector2, Vector3, Vector4 } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, ClampToEdgeWrapping, Color, DoubleSide, LOD, LinearFilter, LinearMipmapLinearFilter,
+  Matrix3, Matrix4, Mesh, NoColorSpace, ShaderMaterial, Sphere, TextureLoader, UniformsLib, UniformsUtils, Vector2, Vector3,
+  Vector4 } from 'three';
 import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, impostorDefaults, impostorSettingsOf, settingsOf, skyDefaults, shadowValues,
   softValues, sunDefaults, switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
@@ -359,8 +360,8 @@ export class ImpostorMaterial extends SunlitMaterial {
 
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
-    const own = Object.fromEntries(['impostor_lobe', 'impostor_rest', 'impostor_atlas', 'impostor_center', 'impostor_radius', 'impostor_scale',
-      'impostor_exponent', 'extinction', 'volume_gain'].map(name => [name, { value: null }]));
+    const own = Object.fromEntries(['impostor_lobe', 'impostor_rest', 'impostor_atlas', 'impostor_center', 'impostor_radius',
+      'impostor_scale', 'impostor_exponent', 'extinction', 'volume_gain'].map(name => [name, { value: null }]));
     super({ ...colors, ...own, phase: { value: new Vector3() } },
       { vertexShader: IMPOSTOR_VERTEX, fragmentShader: IMPOSTOR_FRAGMENT, transparent: true, depthWrite: false, side: DoubleSide });
     this.type = 'ImpostorMaterial';
@@ -399,8 +400,8 @@ export class ImpostorMaterial extends SunlitMaterial {
     super.copy(source);
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
-    for (const key of ['exponent', 'extinction', 'ofVolume', 'volumeGain', 'phase', 'center', 'radius', 'atlas', 'lobeTexture', 'restTexture'])
-      this[key] = source[key];
+    const own = ['exponent', 'extinction', 'ofVolume', 'volumeGain', 'phase', 'center', 'radius', 'atlas', 'lobeTexture', 'restTexture'];
+    for (const key of own) this[key] = source[key];
     return this;
   }
 }
@@ -436,8 +437,8 @@ export function sortImpostors(mesh, camera) {
 
 // A texture of an atlas, as its shader reads it.
 function asAtlas(texture) {
-  return Object.assign(texture, { colorSpace: NoColorSpace, minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter, generateMipmaps: true,
-    wrapS: ClampToEdgeWrapping, wrapT: ClampToEdgeWrapping, needsUpdate: true });
+  return Object.assign(texture, { colorSpace: NoColorSpace, minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter,
+    generateMipmaps: true, wrapS: ClampToEdgeWrapping, wrapT: ClampToEdgeWrapping, needsUpdate: true });
 }
 
 // For a mesh that covers the screen, such as CloudSky, and cameras with perspective.

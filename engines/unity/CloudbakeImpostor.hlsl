@@ -26,8 +26,8 @@ struct ImpostorSquare {
   float texels;
 };
 
-// `position`: a corner of the file's square. `axis` leads from the scene to a camera without perspective, `eye` is the place of another one.
-// `side`: of a pixel of the picture, at the distance 1 where there is perspective.
+// `position`: a corner of the file's square. `axis` leads from the scene to a camera without perspective, `eye` is the place of another
+// one. `side`: of a pixel of the picture, at the distance 1 where there is perspective.
 ImpostorSquare impostorSquare(float3 position, float4x4 to_world, float3x3 to_object, float3 eye, float3 axis, bool has_perspective,
                               float side) {
   ImpostorSquare square;

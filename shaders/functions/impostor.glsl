@@ -101,9 +101,9 @@ vec4 impostorMean(vec4 sum, float weights) {
   return vec4(direction, sum.w / weights);
 }
 
-// A corner of the square on which the impostor is drawn: through the center, turned to the eye, and so large that the ball is in it. 'own_eye'
-// is the place of the eye, or without perspective any vector towards the camera. Within the ball the square has no size. What frames show
-// beyond the ball needs the margin of 1.1.
+// A corner of the square on which the impostor is drawn: through the center, turned to the eye, and so large that the ball is in it.
+// 'own_eye' is the place of the eye, or without perspective any vector towards the camera. Within the ball the square has no size. What
+// frames show beyond the ball needs the margin of 1.1.
 vec3 impostorCorner(vec2 corner, vec3 own_eye, bool has_perspective) {
   float away = length(own_eye);
   vec3 to_eye = own_eye / away;

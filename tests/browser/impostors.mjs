@@ -31,7 +31,8 @@ const SCENES = {
   'impostors and a cloud': `${HEAD}${CLOUDS}`,
   'the image chain as published': `${HEAD}[chain]\nas_published = true\n${CLOUDS}`,
   'impostors before a slab of noise': `${HEAD}${CLOUDS}[[slab]]\n`,
-  'a lamp, which does not shine on impostors': `${HEAD}[[lamp]]\nplace = [-3, 3, 7]\nstrength = 30\n${CLOUDS.slice(0, CLOUDS.lastIndexOf('[[cloud]]'))}`,
+  'a lamp, which does not shine on impostors':
+    `${HEAD}[[lamp]]\nplace = [-3, 3, 7]\nstrength = 30\n${CLOUDS.slice(0, CLOUDS.lastIndexOf('[[cloud]]'))}`,
 };
 
 function compare(values, truth) {

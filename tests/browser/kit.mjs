@@ -22,7 +22,8 @@ for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', en
 // The texts of the kit that are evaluated or compiled here. tests/browser/unity.mjs compiles and runs the scripts and the chain.
 const used = new Set(['URP/CloudbakeFeature.cs', 'URP/Cloudbake.Universal.asmdef', 'Editor/CloudbakeMaterials.cs',
   'Editor/Cloudbake.Editor.asmdef', 'Cloudbake.asmdef', 'CloudbakeAsset.cs', 'CloudbakeCamera.cs', 'CloudbakeChain.cs',
-  'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeImpostor.cs', 'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
+  'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeImpostor.cs',
+  'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
 const kit = name => (used.add(name), readFileSync(join(folder, name), 'utf8'));
 
 // --- What is evaluated of an engine ---

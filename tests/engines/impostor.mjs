@@ -37,7 +37,8 @@ const ONE = [{}], SEVERAL = [{ position: [0, 0, 0], rotation: [20, 50, 0], scale
   { position: [10, 7, -40], rotation: [0, 200, 0] }, { position: [-15, 10, -80] }, { position: [-6, 1, 4], scale: [0.4, 0.4, 0.4] }];
 
 const sceneOf = (clouds, extinction) => HEAD.replace('EXTINCTION', extinction) + clouds.map(one =>
-  `[[cloud]]\nfile = "far/impostor.glb"\n${Object.entries(one).map(([key, values]) => `${key} = [${values.join(', ')}]\n`).join('')}`).join('');
+  `[[cloud]]\nfile = "far/impostor.glb"\n${Object.entries(one).map(([key, values]) => `${key} = [${values.join(', ')}]\n`).join('')}`)
+  .join('');
 const matrixOf = ({ position = [0, 0, 0], rotation = [0, 0, 0], scale = [1, 1, 1] }) => new Matrix4().compose(new Vector3(...position),
   new Quaternion().setFromEuler(new Euler(...rotation.map(degrees => degrees * Math.PI / 180), 'ZYX')), new Vector3(...scale)).toArray();
 
@@ -83,7 +84,8 @@ async function pictures(page, extinction) {
       await place(page, clouds, 'nodes');
       const values = await draw(page, view), inside = insideOf(values, without);
       const all = compare(bits(values), truth), own = compare(bits(values), truth, inside);
-      demand(all.near >= NEAR && own.near >= NEAR_IN_CLOUDS[name] && own.all > 1000, `${name} by a camera at ${angles[0]}, sun at ${angles[1]}: ` +
+      const is_near = all.near >= NEAR && own.near >= NEAR_IN_CLOUDS[name] && own.all > 1000;
+      demand(is_near, `${name} by a camera at ${angles[0]}, sun at ${angles[1]}: ` +
         `${percent(all.near)} of values are within 2 of preview's, ${percent(own.near)} of the ${own.all} of a cloud, off by ` +
         `${own.largest.toFixed(1)} at most`);
       if (angles !== VIEWS[0]) continue;
@@ -128,7 +130,8 @@ async function file(page) {
   demand(String(loaded.types) === 'ImpostorMaterial' && loaded.exponent === info.exponent && loaded.extinction === info.extinction
     && String(loaded.center) === String(info.center) && String(loaded.atlas) === String([info.views, info.frame, 3, info.thickest])
     && String(loaded.spaces) === ',', `it reads ${JSON.stringify(loaded)}`);
-  writeFileSync(join(folder, 'lost.glb'), changedGlb(readFileSync(join(folder, 'far/impostor.glb')), json => { json.images[1].name = ''; }));
+  writeFileSync(join(folder, 'lost.glb'),
+    changedGlb(readFileSync(join(folder, 'far/impostor.glb')), json => { json.images[1].name = ''; }));
   const told = await page.evaluate(() => window.kit.load('lost.glb').then(() => 'nothing', ({ message }) => message));
   demand(told.includes('has lost the pictures of its atlas'), `a file without its atlas is refused: ${told}`);
   return info.extinction;

@@ -43,13 +43,15 @@ export function place(subject, matrices, kind) {
   subject.scene = scene;
 }
 
-function prepare({ scene, sky, material, instances }, { size: [width, height], camera, sun, colors, changes = {}, unsorted, ortho }) {
-  const eye = ortho ? new OrthographicCamera(-ortho * width / height, ortho * width / height, ortho, -ortho, camera.distance / 100, camera.distance * 10)
-    : new PerspectiveCamera(camera.fov, width / height, camera.distance / 100, camera.distance * 10);
+function prepare({ sky, material, instances }, { size: [width, height], camera, sun, colors, changes = {}, unsorted, ortho }) {
+  const aspect = width / height, planes = [camera.distance / 100, camera.distance * 10];
+  const eye = ortho ? new OrthographicCamera(-ortho * aspect, ortho * aspect, ortho, -ortho, ...planes)
+    : new PerspectiveCamera(camera.fov, aspect, ...planes);
   eye.position.set(...camera.from);
   eye.lookAt(...camera.at);
   eye.updateMatrixWorld();
-  for (const own of [material, sky.material]) own.setValues({ sunDirection: new Vector3(...sun), sunColor: colorOf(colors.sun_color), tone: 'renderer' });
+  for (const own of [material, sky.material])
+    own.setValues({ sunDirection: new Vector3(...sun), sunColor: colorOf(colors.sun_color), tone: 'renderer' });
   const [zenith, lowSky, horizon, ground] = ['zenith', 'low_sky', 'horizon', 'ground'].map(name => colorOf(colors[name]));
   sky.material.setValues({ zenith, lowSky, horizon, ground });
   material.setValues({ ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...changes });
