@@ -118,8 +118,8 @@ function unityOff({ vertex, fragment, info, mistake }) {
     unity_MatrixP: [[scale[0], 0, 0, 0], [0, scale[1], 0, 0], [0, 0, 1, 0], [0, 0, 1, 0]],
     _WorldSpaceCameraPos: eye, _WorldSpaceLightPos0: [...mirrored(view.to_light), 0], _ScreenParams: [width, height, 0, 0],
     _LightColor0: [1, 0, 0, 1], _AmbientSky: [0, 1, 0, 1], _SunStrength: [1], _VolumeGain: [look.volume_gain],
-    _OfVolume: [info.gains ? 1 : 0], _Exponent: [info.exponent], _Extinction: [one.extinction * (mistake ? 1.05 : 1)], impostor_atlas: one.atlas,
-    _Ball: [...mirrored(info.center), info.radius],
+    _OfVolume: [info.gains ? 1 : 0], _Exponent: [info.exponent], _Extinction: [one.extinction * (mistake ? 1.05 : 1)],
+    impostor_atlas: one.atlas, _Ball: [...mirrored(info.center), info.radius],
   };
   // By the names of HLSL; matrices by columns. What the list does not have is 0.
   for (let block = 0; block < gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS); ++block) {

@@ -1,4 +1,4 @@
-// Lobe impostors in three.js beside the pictures of `preview`.
+// Lobe impostors in three.js and in Babylon.js beside the pictures of `preview`.
 //   node tests/engines/impostor.mjs CLOUDBAKE SOURCE_FOLDER
 import { readFileSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -35,6 +35,8 @@ const VIEWS = [['20,-8', '130,28'], ['110,25', '60,40'], ['250,60', '200,12'], [
 const ONE = [{}], SEVERAL = [{ position: [0, 0, 0], rotation: [20, 50, 0], scale: [1.3, 0.7, 1] },
   { position: [8, 1.5, -3], rotation: [0, 130, 0], scale: [-0.8, 0.8, 0.8] }, { position: [-3.1, 1.2, -8.4], scale: [0.9, 0.9, 0.9] },
   { position: [10, 7, -40], rotation: [0, 200, 0] }, { position: [-15, 10, -80] }, { position: [-6, 1, 4], scale: [0.4, 0.4, 0.4] }];
+
+const CASES = { 'one impostor': ONE, 'six impostors, turned, stretched and mirrored': SEVERAL };
 
 const sceneOf = (clouds, extinction) => HEAD.replace('EXTINCTION', extinction) + clouds.map(one =>
   `[[cloud]]\nfile = "far/impostor.glb"\n${Object.entries(one).map(([key, values]) => `${key} = [${values.join(', ')}]\n`).join('')}`)
@@ -76,7 +78,7 @@ async function subjectOf(page, clouds, [camera, sun], extinction) {
 const insideOf = (values, without) => i => [0, 1, 2].some(c => Math.abs(values[i - i % 3 + c] - without[i - i % 3 + c]) > 1e-3);
 
 async function pictures(page, extinction) {
-  for (const [name, clouds] of Object.entries({ 'one impostor': ONE, 'six impostors, turned, stretched and mirrored': SEVERAL }))
+  for (const [name, clouds] of Object.entries(CASES))
     for (const angles of VIEWS) {
       const { view, truth } = await subjectOf(page, clouds, angles, extinction);
       await place(page, [], 'nodes');
@@ -107,6 +109,32 @@ async function pictures(page, extinction) {
           `instances in another order: off by ${mixed.toExponential(1)}, and by ${sorted.toExponential(1)} after sortImpostors`);
       }
     }
+}
+
+async function inBabylon(page, address, extinction) {
+  await openEngine(page, address, 'babylon_impostor');
+  for (const rightHanded of [true, false]) {
+    const loaded = await load(page, 'far', 'far/impostor.glb', { rightHanded });
+    demand(String(loaded.types) === 'ImpostorMaterial' && loaded.extinction === extinction, `Babylon.js reads ${JSON.stringify(loaded)}`);
+    for (const [name, clouds] of Object.entries(CASES)) {
+      const { view, truth } = await subjectOf(page, clouds, VIEWS[0], extinction);
+      await place(page, [], 'instances');
+      const without = await draw(page, view);
+      await place(page, clouds, 'instances');
+      const values = await draw(page, view), inside = insideOf(values, without);
+      const all = compare(bits(values), truth), own = compare(bits(values), truth, inside);
+      demand(all.near >= NEAR && own.near >= NEAR_IN_CLOUDS[name] && own.all > 1000,
+        `Babylon.js, ${rightHanded ? 'right' : 'left'}-handed, ${name}: ${percent(all.near)} of values are within 2 of preview's, ` +
+        `${percent(own.near)} of the ${own.all} of a cloud`);
+    }
+    // Thin instances are drawn in their order: the far ones first.
+    const { view } = await subjectOf(page, SEVERAL, VIEWS[0], extinction), far = ({ position: [, , z] }) => z;
+    await place(page, SEVERAL, 'instances');
+    const nodes = await draw(page, view);
+    await place(page, [...SEVERAL].sort((a, b) => far(a) - far(b)), 'thin instances');
+    const off = compare(await draw(page, view), nodes).largest;
+    demand(off < 1e-3, `Babylon.js: thin instances: values are those of meshes, off by ${off.toExponential(1)} at most`);
+  }
 }
 
 // An orthographic camera sees what a far one with perspective sees.
@@ -140,11 +168,12 @@ async function file(page) {
 run('grow', 'mediocris', '--vertices', '4000', '-o', 'cloud.glb');
 run('impostor', 'cloud.glb', '--views', '7', '--frame', '48', '-o', 'far');
 run('shader', 'npm', '-o', 'node_modules/cloudbake-materials');
-symlinkSync(join(packages, 'three'), join(folder, 'node_modules/three'));
+for (const name of ['three', '@babylonjs']) symlinkSync(join(packages, name), join(folder, 'node_modules', name));
 const server = await serve(), address = `http://127.0.0.1:${server.address().port}`;
 await testPage(folder, async page => {
   await openEngine(page, address, 'three_impostor');
   const extinction = await file(page);
   await pictures(page, extinction);
   await parallel(page, extinction);
+  await inBabylon(page, address, extinction);
 });

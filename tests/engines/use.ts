@@ -10,6 +10,7 @@ import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { DirectionalLight as BabylonLight } from '@babylonjs/core/Lights/directionalLight.js';
 import { LoadAssetContainerAsync } from '@babylonjs/core/Loading/sceneLoader.js';
+import type { AssetContainer } from '@babylonjs/core/assetContainer.js';
 import type { Scene as BabylonScene } from '@babylonjs/core/scene.js';
 import type { Camera } from '@babylonjs/core/Cameras/camera.js';
 import type { StandardMaterial } from '@babylonjs/core/Materials/standardMaterial.js';
@@ -43,6 +44,12 @@ export async function farAway(scene: Scene, loader: GLTFLoader, camera: Perspect
   const many = new InstancedMesh(impostorSquare(other), other, 100);
   sortImpostors(many, camera);
   scene.add(gltf.scene, many);
+  return material;
+}
+
+export function farInBabylon(container: AssetContainer): babylon.ImpostorMaterial | null {
+  const material = babylon.impostorMaterialOf(container.meshes);
+  if (material) Object.assign(material, { sunLight: null, phase: { share: 0.45 }, volumeGain: 1.4 });
   return material;
 }
 
