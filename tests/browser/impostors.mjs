@@ -91,7 +91,6 @@ function unityOff({ vertex, fragment, info, mistake }) {
     const shader = gl.createShader(type);
     gl.shaderSource(shader, text);
     gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
     gl.attachShader(program, shader);
   }
   gl.linkProgram(program);
@@ -161,8 +160,8 @@ function unityOff({ vertex, fragment, info, mistake }) {
   gl.enableVertexAttribArray(place);
   gl.vertexAttribPointer(place, 4, gl.FLOAT, false, 0, 0);
   const own = new Float32Array(4 * width * height), truth = new Float32Array(4 * width * height);
-  const read = (target, pixels) => {
-    gpu.drawTo([target]);
+  const read = (image, pixels) => {
+    gpu.drawTo([image]);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
   };
   read(gpu.targets.drawn, truth);

@@ -17,8 +17,8 @@ export async function load(file, { rightHanded = true } = {}) {
   container.addAllToScene();
   const sky = new SkyMaterial('sky', scene), meshes = container.meshes.filter(mesh => mesh.getTotalVertices());
   createCloudSky(scene, sky);
-  const [mesh] = meshes;
-  return { scene, rightHanded, meshes, mesh, shown: [], material: impostorMaterialOf(meshes), sky, root: mesh?.computeWorldMatrix(true).clone() };
+  const [mesh] = meshes, root = mesh?.computeWorldMatrix(true).clone();
+  return { scene, rightHanded, meshes, mesh, shown: [], material: impostorMaterialOf(meshes), sky, root };
 }
 
 export function describe({ meshes, material }) {
