@@ -26,13 +26,13 @@ void addImpostorFrame(vec2 frame, float weight, vec3 place, vec3 ray, float leve
 // else. 'to_eye': the direction from the center to the eye; 'texels': of the finest level per pixel of the picture.
 vec4 impostorSeen(vec3 place, vec3 ray, vec3 to_eye, float texels, out vec3 light_distance_opacity) {
   vec4 cell = impostorCell(to_eye, impostor_atlas.x);
-  vec3 weights = impostorWeights(cell);
+  vec3 weights = impostorWeights(cell, impostor_atlas.x);
   float level = impostorLevel(texels, impostor_atlas.z);
   vec4 lobes = vec4(0.0);
   vec3 rest = vec3(0.0);
-  addImpostorFrame(cell.xy, weights.x, place, ray, level, lobes, rest);
-  addImpostorFrame(cell.xy + impostorSide(cell), weights.y, place, ray, level, lobes, rest);
-  addImpostorFrame(cell.xy + vec2(1.0), weights.z, place, ray, level, lobes, rest);
+  addImpostorFrame(cell.xy + impostorFirst(cell, impostor_atlas.x), weights.x, place, ray, level, lobes, rest);
+  addImpostorFrame(cell.xy + impostorSecond(cell, impostor_atlas.x), weights.y, place, ray, level, lobes, rest);
+  addImpostorFrame(cell.xy + impostorThird(cell, impostor_atlas.x), weights.z, place, ray, level, lobes, rest);
   light_distance_opacity = vec3(0.0);
   if (!(rest.z > 0.0)) {
     return vec4(0.0, -1.0, 0.0, 0.0);

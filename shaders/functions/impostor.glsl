@@ -32,7 +32,8 @@ vec3 impostorDirection(vec2 frame, float views) {
   return direction.xzy;
 }
 
-// The frames around a direction to the eye, a unit vector: xy is the first one, xy + impostorSide(cell) the second, xy + 1.0 the third.
+// The cell of four frames around a direction to the eye, a unit vector: xy is its first frame, zw the place in it, 0 to 1. The frames that
+// are seen are at the corners of one of its two triangles: xy + impostorFirst(…), xy + impostorSecond(…) and xy + impostorThird(…).
 vec4 impostorCell(vec3 to_eye, float views) {
   float last = views - 1.0;
   vec2 half_way = octahedralPlace(to_eye.xzy) * 0.5 + 0.5;
@@ -41,13 +42,34 @@ vec4 impostorCell(vec3 to_eye, float views) {
   return vec4(first, place - first);
 }
 
-vec2 impostorSide(vec4 cell) {
-  return cell.z > cell.w ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+// Whether the diagonal from the upper right divides the cell: the one along which the octahedron has an edge's length.
+bool impostorFalls(vec4 cell, float views) {
+  return (2.0 * cell.x + 1.0 < views - 1.0) == (2.0 * cell.y + 1.0 < views - 1.0);
+}
+
+vec2 impostorFirst(vec4 cell, float views) {
+  return impostorFalls(cell, views) && cell.z + cell.w >= 1.0 ? vec2(1.0, 1.0) : vec2(0.0, 0.0);
+}
+
+vec2 impostorSecond(vec4 cell, float views) {
+  return impostorFalls(cell, views) || cell.z > cell.w ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+}
+
+vec2 impostorThird(vec4 cell, float views) {
+  return impostorFalls(cell, views) ? vec2(0.0, 1.0) : vec2(1.0, 1.0);
 }
 
 // How much each of the three counts.
-vec3 impostorWeights(vec4 cell) {
-  return vec3(1.0 - max(cell.z, cell.w), abs(cell.z - cell.w), min(cell.z, cell.w));
+vec3 impostorWeights(vec4 cell, float views) {
+  float u = cell.z;
+  float v = cell.w;
+  if (!impostorFalls(cell, views)) {
+    return vec3(1.0 - max(u, v), abs(u - v), min(u, v));
+  }
+  if (u + v < 1.0) {
+    return vec3(1.0 - u - v, u, v);
+  }
+  return vec3(u + v - 1.0, 1.0 - v, 1.0 - u);
 }
 
 // To the right in a picture that is seen from a direction. The third axis, upwards, is cross(to_eye, right).

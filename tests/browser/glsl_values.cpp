@@ -115,9 +115,10 @@ std::vector<Function> impostorFunctions() {
   const std::string prelude = R"(
 vec4 meanOfFrames(vec3 to_eye, float views) {
   vec4 cell = impostorCell(to_eye, views);
-  vec3 weights = impostorWeights(cell);
-  vec3 mean = impostorDirection(cell.xy, views) * weights.x + impostorDirection(cell.xy + impostorSide(cell), views) * weights.y
-    + impostorDirection(cell.xy + vec2(1.0, 1.0), views) * weights.z;
+  vec3 weights = impostorWeights(cell, views);
+  vec3 mean = impostorDirection(cell.xy + impostorFirst(cell, views), views) * weights.x
+    + impostorDirection(cell.xy + impostorSecond(cell, views), views) * weights.y
+    + impostorDirection(cell.xy + impostorThird(cell, views), views) * weights.z;
   return vec4(mean, dot(weights, weights));
 }
 )";
@@ -131,7 +132,7 @@ vec4 meanOfFrames(vec3 to_eye, float views) {
   return {{"impostor", "impostorDirection", "vec4(impostorDirection(p[0].xy, p[0].z), 0.0)",
            "vec4(impostorDirection(p[0].xy, p[0].z + 1.0), 0.0)", 1e-6, 0, directions},
           {"impostor",
-           "impostorCell, impostorSide and impostorWeights",
+           "impostorCell, its three frames and impostorWeights",
            "meanOfFrames(p[0].xyz, p[0].w)",
            "meanOfFrames(p[0].zyx, p[0].w)",
            2e-5,
