@@ -5,6 +5,7 @@
 #include "app/tell.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
+#include "io/gltf/impostor/impostor_file.h"
 #include "pipeline/kit/engine_kit.h"
 
 namespace cloudbake {
@@ -12,7 +13,9 @@ namespace cloudbake {
 namespace {
 
 AssetInfo infoOf(const std::filesystem::path& asset, const ReadSettings& settings, Warnings& warnings) {
-  const StoredAsset stored = readStoredAsset(asset, readFileBytes(asset), warnings, settings);
+  const std::string bytes = readFileBytes(asset);
+  if (isImpostor(bytes)) return boxWithImpostor(decodeImpostor(asset, bytes, settings.memory_limit)).info;
+  const StoredAsset stored = readStoredAsset(asset, bytes, warnings, settings);
   if (!stored.info_fault.empty()) throw InputError(asset.string(), stored.info_fault + ", or give no asset");
   return *stored.info;
 }

@@ -79,7 +79,7 @@ func _material(shader, values):
 func _find_clouds():
 	var found = []
 	for node in get_tree().get_nodes_in_group("cloudbake"):
-		if node.get_viewport() == get_viewport():
+		if node.get_viewport() == get_viewport() and not node.has_meta("impostor"):
 			found.append(node)
 	for node in found:
 		if not node in _layers:

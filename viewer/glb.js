@@ -26,6 +26,7 @@ export class GlbReader {
     this.binary = binary + 8;
     this.info = this.json.asset?.extras?.cloudbake;
     if (!this.info) throw new Error('This GLB has no lobes: bake it with `cloudbake bake` first.');
+    if (this.info.layout === 'lobe-impostor') throw new Error('This GLB is an impostor: open it with `cloudbake view`.');
     if (!['lobe-uv', 'lobe-packed'].includes(this.info.layout) || this.info.version !== 1)
       throw new Error('The GLB has lobes of another version of cloudbake: bake it again.');
     const known = ['KHR_mesh_quantization', 'KHR_texture_transform'];

@@ -113,7 +113,7 @@ function takeLayers(reader, { moon_picture, lattices }) {
 
 /** @param {Scene | ScatteredClouds} scene @returns {Promise<Arrays>} */
 export async function unpackMesh({ mesh, parts }) {
-  const { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, layers, data } = mesh;
+  const { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, impostors = [], layers, data } = mesh;
   const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {
     positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),
@@ -121,6 +121,7 @@ export async function unpackMesh({ mesh, parts }) {
     colors: reader.take(Float32Array, is_colored ? 3 * reader.vertices : 0),
     harmonics: reader.take(Float32Array, harmonics * reader.vertices), harmonicsPerVertex: harmonics,
     triangles: reader.takeWhole(sum(stored, 'count'), 1), fields: fields.map(cells => reader.take(Uint8Array, cells)),
+    impostors: impostors.map(bytes => ({ lobe: reader.take(Uint8Array, bytes), rest: reader.take(Uint8Array, bytes) })),
   };
   const of_layers = layers && takeLayers(reader, layers), all = withCopies(parts, stored, own);
   return { ...own, ...all, layers: of_layers, triangles: packedTriangles(all.triangles, vertices) };

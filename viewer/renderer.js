@@ -3,6 +3,7 @@
 import { CHANNELS, LAMPS, OWN, SHOWN, drawChain } from './chains.js';
 import { CloudShade } from './cloud_shade.js';
 import { Fields } from './fields.js';
+import { Impostors } from './impostors.js';
 import { drawPlainSample } from './plain.js';
 import { Vertices } from './vertices.js';
 import { cloudBox, viewOf } from './view.js';
@@ -26,6 +27,7 @@ export class Renderer {
     this.fields?.delete();
     this.shade = new CloudShade(scene);
     this.fields = scene.scattered ? new Fields(this.gpu, scene) : null;
+    this.impostors = scene.impostors ? new Impostors(this.gpu, scene) : null;
     this.skyKey = null;
   }
 
@@ -90,7 +92,7 @@ export class Renderer {
     return look.own_colors && [arrays, scattered?.arrays].some(one => one?.colors?.length);
   }
 
-  get hasClouds() { return !!this.fields || this.scene.parts.some(part => part.count); }
+  get hasClouds() { return !!this.fields || !!this.impostors || this.scene.parts.some(part => part.count); }
 
   get complete() { return this.samples === this.look.samples.length && (!this.isLayered || this.layers.isComposed); }
 
@@ -167,8 +169,11 @@ export class Renderer {
   // Their mean, and the chain.
   drawMean() {
     const { gpu, sums: { sums, share } } = this;
-    for (const light of this.shown)
-      this.fillBox([gpu.target(`${light}drawn`, this.drawnSize)], gpu.program('mean.frag'), { sums: light + sums, share });
+    for (const light of this.shown) {
+      const name = `${light}drawn`, start = target => this.fillBox([target], gpu.program('mean.frag'), { sums: light + sums, share });
+      if (this.impostors) this.impostors.draw(this, name, this.drawnSize, SHOWN.indexOf(light), start);
+      else start(gpu.target(name, this.drawnSize));
+    }
     drawChain(this);
   }
 }

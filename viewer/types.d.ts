@@ -37,6 +37,7 @@ interface Arrays {
   harmonics: Float32Array; harmonicsPerVertex: number;
   triangles: Uint16Array | Uint32Array;
   fields?: Uint8Array[];
+  impostors?: { lobe: Uint8Array; rest: Uint8Array }[];  // three bytes per pixel of the atlas
   layers?: { moon?: { width: number; height: number; bytes: Uint8Array }; lattices: Lattice[] };
 }
 
@@ -47,6 +48,12 @@ interface Caster { origin: Vec3; cell_size: number; cells: [number, number, numb
 
 /** Where the nodes of a grid are by which clouds shade each other. */
 interface ShadeFrame { rows: number[][]; nodes: number[]; axis: number }
+
+/** A placed impostor. Center and radius are those of its ball in the world; the matrices are columns, 'to_own' leads to radii. */
+interface PlacedImpostor {
+  picture: number; atlas: number[]; center: Vec3; radius: number; to_own: number[]; to_world: number[];
+  exponent: number; extinction: number; gains: boolean;
+}
 
 /** A lamp, or flashes of lightning: of every 'every' seconds one, of which each stroke has a start and a strength. */
 interface Lamp {
@@ -86,6 +93,7 @@ interface Scene {
   shade?: { kind: 'none' | 'each' | 'grid'; low: Vec3; high: Vec3; cloud_size: number; drifts: boolean };  // without a cloud: the kind
   lamps?: Lamp[];
   parts: Part[]; corners: Vec3[];
+  impostors?: PlacedImpostor[];
   mesh?: any;
   scattered?: ScatteredClouds;
   keys?: { table: string; name: string; path: (string | number)[]; limits: Limits }[];

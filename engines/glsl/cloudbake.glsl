@@ -32,6 +32,8 @@ const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 
 #include "soft.glsl"
 
+#include "impostor.glsl"
+
 #include "harmonics.glsl"
 
 #include "sky.glsl"

@@ -1,6 +1,7 @@
 # Gives the meshes of a baked GLB their shader. Choose this script as "Custom Script" in the Import dock.
 #
 # The material is stored beside the asset, NAME.glb -> NAME_cloud.tres, so that you can edit it: later imports change only k, b and sigma.
+# An impostor (`cloudbake impostor`) gets a square with the shader cloudbake_impostor, and its pictures are stored beside it.
 # Import settings that keep the lobes: Meshes > Compress off, Ensure Tangents off, Light Baking not "Gen Lightmaps" (which replaces UV2).
 tool
 extends EditorScenePostImport
@@ -16,6 +17,9 @@ func post_import(scene):
 	var file = File.new()
 	var document = _document(file)
 	var info = document.get("asset", {}).get("extras", {}).get("cloudbake", {})
+	if info.get("layout") == "lobe-impostor":
+		_set_impostor(scene, _square(info), _impostor_material(info, document, file))
+		return scene
 	var first_set = int(info.get("uv_sets", [0, 1])[0])
 	if info.empty():
 		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
@@ -57,6 +61,73 @@ func _material(info):
 	ResourceSaver.save(path, material)
 	material.take_over_path(path)
 	return material
+
+
+func _impostor_material(info, document, file):
+	var path = get_source_file().get_basename() + "_cloud.tres"
+	var material = load(path) if ResourceLoader.exists(path) else ShaderMaterial.new()
+	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake_impostor.shader")
+	for name in ["exponent", "extinction"]:
+		material.set_shader_param(name, info[name])
+	material.set_shader_param("of_volume", 1.0 if info.get("gains") else 0.0)
+	material.set_shader_param("impostor_center", Vector3(info.center[0], info.center[1], info.center[2]))
+	material.set_shader_param("impostor_radius", info.radius)
+	var last_level = 0
+	var side = int(info.frame)
+	while side % 2 == 0 and side >= 8:
+		side /= 2
+		last_level += 1
+	material.set_shader_param("impostor_atlas", Plane(info.views, info.frame, last_level, info.thickest))
+	for name in ["lobe", "rest"]:
+		material.set_shader_param("impostor_" + name, _picture(name, document, file))
+	ResourceSaver.save(path, material)
+	material.take_over_path(path)
+	return material
+
+
+# A picture of the atlas, with mip levels and clamped.
+func _picture(name, document, file):
+	var texture = ImageTexture.new()
+	for picture in document.images:
+		if picture.get("name") != name:
+			continue
+		var view = document.bufferViews[int(picture.bufferView)]
+		file.seek(12)
+		file.seek(28 + file.get_32() + int(view.get("byteOffset", 0)))
+		var image = Image.new()
+		image.load_png_from_buffer(file.get_buffer(int(view.byteLength)))
+		image.generate_mipmaps()
+		texture.create_from_image(image, Texture.FLAG_FILTER | Texture.FLAG_MIPMAPS)
+		var path = "%s_%s.res" % [get_source_file().get_basename(), name]
+		ResourceSaver.save(path, texture)
+		texture.take_over_path(path)
+		return texture
+	push_error("%s has lost the picture '%s' of its atlas: take the file that `cloudbake impostor` wrote." % [get_source_file(), name])
+	return texture
+
+
+# A square whose bounds are those of the ball; the shader turns it.
+func _square(info):
+	var arrays = []
+	arrays.resize(Mesh.ARRAY_MAX)
+	arrays[Mesh.ARRAY_VERTEX] = PoolVector3Array([Vector3(-1, -1, 0), Vector3(1, -1, 0), Vector3(1, 1, 0), Vector3(-1, 1, 0)])
+	arrays[Mesh.ARRAY_INDEX] = PoolIntArray([0, 1, 2, 0, 2, 3])
+	var mesh = ArrayMesh.new()
+	mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)
+	var center = Vector3(info.center[0], info.center[1], info.center[2])
+	mesh.custom_aabb = AABB(center - Vector3.ONE * info.radius, 2 * Vector3.ONE * info.radius)
+	return mesh
+
+
+func _set_impostor(node, square, material):
+	if node is MeshInstance:
+		square.surface_set_material(0, material)
+		node.mesh = square
+		node.set_surface_material(0, null)
+		node.add_to_group("cloudbake", true)
+		node.set_meta("impostor", true)    # cloudbake_painted.gd leaves it to the engine
+	for child in node.get_children():
+		_set_impostor(child, square, material)
 
 
 func _set_material(node, material, switch_pixels):

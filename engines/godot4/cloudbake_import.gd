@@ -1,7 +1,8 @@
 # Gives the meshes of a baked GLB their shader. Choose this script as "Import Script" in the Import dock.
 #
 # The material is stored beside the asset, NAME.glb -> NAME_cloud.tres, so that you can edit it: later imports change only k, b, sigma
-# and the UV sets. Import settings that keep the lobes: Meshes > Force Disable Compression on, Ensure Tangents off, Light Baking not
+# and the UV sets. An impostor (`cloudbake impostor`) gets a square with the shader cloudbake_impostor, and its pictures are stored beside
+# it. Import settings that keep the lobes: Meshes > Force Disable Compression on, Ensure Tangents off, Light Baking not
 # "Static Lightmaps" (which replaces UV2).
 @tool
 extends EditorScenePostImport
@@ -16,7 +17,11 @@ const FORMATS = [
 
 
 func _post_import(scene):
-	var info = _info()
+	var document = _document()
+	var info = document.get("asset", {}).get("extras", {}).get("cloudbake", {})
+	if info.get("layout") == "lobe-impostor":
+		_set_impostor(scene, _square(info), _impostor_material(info, document))
+		return scene
 	if info.is_empty():
 		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
 	var first_set = int(info.get("uv_sets", [0, 1])[0])
@@ -24,16 +29,15 @@ func _post_import(scene):
 	return scene
 
 
-# asset.extras.cloudbake of the GLB; empty if the asset is something else.
-func _info():
+# The JSON of the GLB; empty if the asset is something else.
+func _document():
 	var file = FileAccess.open(get_source_file(), FileAccess.READ)
 	if file == null or file.get_32() != GLB:
 		return {}
 	file.seek(12)
 	var size = file.get_32()
 	file.seek(20)
-	var document = JSON.parse_string(file.get_buffer(size).get_string_from_utf8())
-	return document.get("asset", {}).get("extras", {}).get("cloudbake", {})
+	return JSON.parse_string(file.get_buffer(size).get_string_from_utf8())
 
 
 func _material(info, first_set):
@@ -55,6 +59,73 @@ func _material(info, first_set):
 	ResourceSaver.save(material, path)
 	material.take_over_path(path)
 	return material
+
+
+func _impostor_material(info, document):
+	var path = get_source_file().get_basename() + "_cloud.tres"
+	var material = load(path) if ResourceLoader.exists(path) else ShaderMaterial.new()
+	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake_impostor.gdshader")
+	for parameter in ["exponent", "extinction"]:
+		material.set_shader_parameter(parameter, info[parameter])
+	material.set_shader_parameter("of_volume", 1.0 if info.get("gains") else 0.0)
+	material.set_shader_parameter("impostor_center", Vector3(info.center[0], info.center[1], info.center[2]))
+	material.set_shader_parameter("impostor_radius", info.radius)
+	var last_level = 0
+	var side = int(info.frame)
+	while side % 2 == 0 and side >= 8:
+		side /= 2
+		last_level += 1
+	material.set_shader_parameter("impostor_atlas", Vector4(info.views, info.frame, last_level, info.thickest))
+	for picture in ["lobe", "rest"]:
+		material.set_shader_parameter("impostor_" + picture, _picture(picture, document))
+	ResourceSaver.save(material, path)
+	material.take_over_path(path)
+	return material
+
+
+# A picture of the atlas, with mip levels.
+func _picture(wanted, document):
+	for picture in document.images:
+		if picture.get("name") != wanted:
+			continue
+		var view = document.bufferViews[int(picture.bufferView)]
+		var file = FileAccess.open(get_source_file(), FileAccess.READ)
+		file.seek(12)
+		file.seek(28 + file.get_32() + int(view.get("byteOffset", 0)))
+		var image = Image.new()
+		image.load_png_from_buffer(file.get_buffer(int(view.byteLength)))
+		image.generate_mipmaps()
+		var texture = ImageTexture.create_from_image(image)
+		var path = "%s_%s.res" % [get_source_file().get_basename(), wanted]
+		ResourceSaver.save(texture, path)
+		texture.take_over_path(path)
+		return texture
+	push_error("%s has lost the picture '%s' of its atlas: take the file that `cloudbake impostor` wrote." % [get_source_file(), wanted])
+	return null
+
+
+# A square whose bounds are those of the ball; the shader turns it.
+func _square(info):
+	var arrays = []
+	arrays.resize(Mesh.ARRAY_MAX)
+	arrays[Mesh.ARRAY_VERTEX] = PackedVector3Array([Vector3(-1, -1, 0), Vector3(1, -1, 0), Vector3(1, 1, 0), Vector3(-1, 1, 0)])
+	arrays[Mesh.ARRAY_INDEX] = PackedInt32Array([0, 1, 2, 0, 2, 3])
+	var mesh = ArrayMesh.new()
+	mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)
+	var center = Vector3(info.center[0], info.center[1], info.center[2])
+	mesh.custom_aabb = AABB(center - Vector3.ONE * info.radius, 2 * Vector3.ONE * info.radius)
+	return mesh
+
+
+func _set_impostor(node, square, material):
+	if node is MeshInstance3D:
+		square.surface_set_material(0, material)
+		node.mesh = square
+		node.set_surface_override_material(0, null)
+		node.add_to_group("cloudbake", true)
+		node.set_meta("impostor", true)    # cloudbake_painted.gd leaves it to the engine
+	for child in node.get_children():
+		_set_impostor(child, square, material)
 
 
 func _set_material(node, material, format, switch_pixels):

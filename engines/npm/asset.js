@@ -31,6 +31,13 @@ export const cloudDefaults = colorOf => ({
   rimFrequency: 8, rimScroll: [0, 0, 0], insideLight: 0.7, ditherShift: 0, depthTexture: null, lamps: [],
 });
 
+// The settings of an impostor's material that is given none.
+export const impostorDefaults = colorOf => ({
+  ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), exponent: DEFAULTS.exponent,
+  extinction: DEFAULTS.extinction, ofVolume: false, volumeGain: 1, phase: {}, center: [0, 0, 0], radius: 1, atlas: [2, 4, 0, 1],
+  lobeTexture: null, restTexture: null,
+});
+
 // A number of the asset. Shaders have 32 bits for it, JSON has more.
 function constantOf(info, key) {
   const value = info[key] ?? DEFAULTS[key];
@@ -60,7 +67,7 @@ function densityMaxOf({ layout = 'lobe-uv', version = 1, density_max = 0 }) {
 // used.
 export function settingsOf(json) {
   const info = json.asset?.extras?.cloudbake;
-  if (!info) return null;
+  if (!info || info.layout === 'lobe-impostor') return null;
   const given = constantOf(info, 'extinction'), extinction = given > 0 ? given : DEFAULTS.extinction;
   return {
     exponent: constantOf(info, 'exponent'),
@@ -72,6 +79,31 @@ export function settingsOf(json) {
     harmonicOrder: orderOf(info),
     harmonicExtinction: extinction,
   };
+}
+
+// Of a lobe impostor (`cloudbake impostor`): what its material needs from the JSON of the file, with the numbers of the textures of its
+// atlas; null of another file.
+export function impostorSettingsOf(json) {
+  const info = json.asset?.extras?.cloudbake;
+  if (info?.layout !== 'lobe-impostor') return null;
+  if (info.version !== 1)
+    throw new Error(`the impostor has version ${info.version} of its layout, not 1: take the package of its cloudbake`);
+  const textureOf = name => json.textures?.findIndex(({ source }) => json.images?.[source]?.name === name) ?? -1;
+  const lobe = textureOf('lobe'), rest = textureOf('rest');
+  if (lobe < 0 || rest < 0)
+    throw new Error('the impostor has lost the pictures of its atlas: take the file that `cloudbake impostor` wrote');
+  return {
+    exponent: constantOf(info, 'exponent'), extinction: constantOf(info, 'extinction'), ofVolume: info.gains === true,
+    center: info.center, radius: info.radius, atlas: [info.views, info.frame, lastLevelOf(info.frame), info.thickest],
+    textures: { lobe, rest },
+  };
+}
+
+// Of the mip levels of an atlas: down to 4 pixels to a side of a frame.
+function lastLevelOf(frame) {
+  let level = 0;
+  for (let side = frame; side % 2 === 0 && side >= 8; side /= 2) ++level;
+  return level;
 }
 
 // The most pixels that the longest side of the full asset may cover where a file of a level (`bake --lods`) is drawn; 0 for the full asset.

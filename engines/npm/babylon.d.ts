@@ -11,7 +11,7 @@ import type { AssetContainer } from '@babylonjs/core/assetContainer.js';
 import type { Camera } from '@babylonjs/core/Cameras/camera.js';
 import type { Material } from '@babylonjs/core/Materials/material.js';
 import type { Scene } from '@babylonjs/core/scene.js';
-import type { Lobes, Phase, ShadowFrame, SkyColors, Sun } from './settings.js';
+import type { ImpostorLobes, Lobes, Phase, ShadowFrame, SkyColors, Sun } from './settings.js';
 
 export type { Phase };
 
@@ -45,6 +45,22 @@ export class CloudMaterial extends ShaderMaterial {
   readonly uvSets: [number, number];
 }
 export interface CloudMaterial extends Omit<CloudSettings, 'phase'> {}
+
+export interface ImpostorSettings extends SunlitSettings, ImpostorLobes<Color3, BaseTexture> {}
+
+/**
+ * A lobe impostor (`cloudbake impostor`), lit like the cloud: for the square of its file, which it turns to the camera. Instances and thin
+ * instances are supported.
+ */
+export class ImpostorMaterial extends ShaderMaterial {
+  constructor(name: string, scene: Scene, parameters?: Partial<Omit<ImpostorSettings, 'phase'>> & { phase?: Partial<Phase> });
+  get phase(): Phase;
+  set phase(given: Partial<Phase>);
+}
+export interface ImpostorMaterial extends Omit<ImpostorSettings, 'phase'> {}
+
+/** The ImpostorMaterial that the loader extension gave to the square of an impostor, or null. */
+export function impostorMaterialOf(meshes: readonly AbstractMesh[]): ImpostorMaterial | null;
 
 /** The sky of `cloudbake preview`, for a mesh that covers the screen and cameras with perspective. */
 export class SkyMaterial extends ShaderMaterial {

@@ -13,20 +13,22 @@ import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertexGlobal.js';
 import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertexGlobalDeclaration.js';
 import { VertexBuffer } from '@babylonjs/core/Buffers/buffer.js';
 import { Camera } from '@babylonjs/core/Cameras/camera.js';
+import { BoundingInfo } from '@babylonjs/core/Culling/boundingInfo.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
 import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
 import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
 import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
-import { Vector2, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
 import { forwardOf } from './babylon_view.js';
-import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, settingsOf, shadowValues, skyDefaults, softValues, sunDefaults,
-  switchPixelsOf } from './asset.js';
+import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, impostorDefaults, impostorSettingsOf, settingsOf, shadowValues, skyDefaults,
+  softValues, sunDefaults, switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
-import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, VARYINGS, vertexLight, writeVaryings } from './shaders.js';
+import { CAST_SHADOW, CHANNELS, IMPOSTOR_PIXEL, IMPOSTOR_SQUARE, IMPOSTOR_VARYINGS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, VARYINGS,
+  vertexLight, writeVaryings } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? VertexBuffer.UVKind : `${VertexBuffer.UVKind}${n + 1}`;
@@ -105,6 +107,47 @@ void main() {
   #ifdef LAMPS
     color.rgb += cloud_lamps;
   #endif
+  ${TO_SCREEN}
+  #include<fogFragment>
+  gl_FragColor = color;
+}
+`;
+
+// The square is that of the file.
+const IMPOSTOR_VERTEX = `
+precision highp float;
+precision highp int;
+attribute vec3 position;
+uniform mat4 view;
+uniform mat4 viewProjection;
+uniform vec3 eye;
+uniform float is_perspective;
+#include<instancesDeclaration>
+#include<fogVertexDeclaration>
+${IMPOSTOR_VARYINGS}
+${IMPOSTOR_SQUARE}
+void main() {
+  #include<instancesVertex>
+  vec2 corner = (position.xy - impostor_center.xy) / impostor_radius;
+  vec4 worldPos = vec4(cornerInWorld(corner, finalWorld, eye, eye, is_perspective > 0.0), 1.0);
+  gl_Position = viewProjection * worldPos;
+  cloud_view = worldPos.xyz * is_perspective - eye;
+  #include<fogVertex>
+}
+`;
+
+const IMPOSTOR_FRAGMENT = `
+precision highp float;
+precision highp int;
+#include<fogFragmentDeclaration>
+${IMPOSTOR_VARYINGS}
+${PIXEL_COLOR}
+${TONE}
+${IMPOSTOR_PIXEL}
+void main() {
+  vec3 light = impostorLight(to_sun);
+  if (!(light.z > 0.0)) discard;
+  vec4 color = vec4(colorOfPixel(light.xy, cloud_view), light.z);
   ${TO_SCREEN}
   #include<fogFragment>
   gl_FragColor = color;
@@ -276,6 +319,57 @@ export class CloudMaterial extends SunlitMaterial {
 }
 addSoftSettings(CloudMaterial);
 
+// For the square of an impostor (`cloudbake impostor`), which it turns to the camera.
+export class ImpostorMaterial extends SunlitMaterial {
+  /** @type {Settings['ambientSky']} */ ambientSky;
+  /** @type {Settings['ambientGround']} */ ambientGround;
+  /** @type {number} */ exponent;
+  /** @type {number} */ extinction;
+  /** @type {boolean} */ ofVolume;
+  /** @type {number} */ volumeGain;
+  /** @type {number[]} */ center;
+  /** @type {number} */ radius;
+  /** @type {number[]} */ atlas;
+  /** @type {Texture | null} */ lobeTexture;
+  /** @type {Texture | null} */ restTexture;
+
+  constructor(name, scene, parameters = {}) {
+    super(name, scene, IMPOSTOR_VERTEX, IMPOSTOR_FRAGMENT, {
+      attributes: ['position'], needAlphaBlending: true, samplers: ['impostor_lobe', 'impostor_rest'],
+      uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color', 'ambient_sky',
+        'ambient_ground', 'extinction', 'volume_gain', 'phase', 'impostor_atlas', 'impostor_center', 'impostor_radius', 'impostor_scale',
+        'impostor_exponent'],
+    });
+    this.backFaceCulling = false;
+    this.disableDepthWrite = true;
+    Object.assign(this, impostorDefaults(colorOf), parameters);
+  }
+
+  getClassName() { return 'ImpostorMaterial'; }
+
+  get phase() { return this.scattering; }
+  set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
+
+  writeUniforms() {
+    const scene = this.getScene(), camera = scene.activeCamera, is_perspective = camera.mode === Camera.PERSPECTIVE_CAMERA;
+    this.setVector3('eye', is_perspective ? camera.globalPosition : forwardOf(camera).scale(-1));
+    this.setFloat('is_perspective', is_perspective ? 1 : 0);
+    this.setColor3('sun_color', this.sunColor);
+    this.setColor3('ambient_sky', this.ambientSky);
+    this.setColor3('ambient_ground', this.ambientGround);
+    this.setFloat('extinction', this.extinction);
+    this.setFloat('volume_gain', this.ofVolume ? this.volumeGain : 1);
+    this.setVector3('phase', new Vector3(this.phase.share, this.phase.asymmetry, this.phase.limit));
+    this.setVector4('impostor_atlas', Vector4.FromArray(this.atlas));
+    this.setVector3('impostor_center', Vector3.FromArray(this.center));
+    this.setFloat('impostor_radius', this.radius);
+    this.setFloat('impostor_scale', 2 / (camera.getProjectionMatrix().m[5] * scene.getEngine().getRenderHeight()));
+    this.setFloat('impostor_exponent', this.exponent);
+    this.setTexture('impostor_lobe', this.lobeTexture);
+    this.setTexture('impostor_rest', this.restTexture);
+  }
+}
+
 // For a mesh that covers the screen, which createCloudSky makes, and cameras with perspective.
 export class SkyMaterial extends SunlitMaterial {
   constructor(name, scene, parameters = {}) {
@@ -312,7 +406,23 @@ export function cloudMaterialOf(meshes) {
   return meshes.map(({ material }) => material).find(material => material instanceof CloudMaterial) ?? null;
 }
 
-// Meshes of baked files are drawn with one CloudMaterial.
+// That of an impostor, or null.
+export function impostorMaterialOf(meshes) {
+  return meshes.map(({ material }) => material).find(material => material instanceof ImpostorMaterial) ?? null;
+}
+
+// A picture of an atlas, from the bytes of its PNG.
+function atlasTexture(bytes, scene) {
+  const url = URL.createObjectURL(new Blob([bytes], { type: 'image/png' }));
+  return new Promise((done, fail) => {
+    const texture = new Texture(url, scene, { invertY: false, samplingMode: Texture.TRILINEAR_SAMPLINGMODE,
+      onLoad: () => { URL.revokeObjectURL(url); done(texture); }, onError: fail });
+    texture.wrapU = texture.wrapV = Constants.TEXTURE_CLAMP_ADDRESSMODE;
+    texture.anisotropicFilteringLevel = 1;
+  });
+}
+
+// Meshes of baked files are drawn with one CloudMaterial, the square of an impostor with an ImpostorMaterial.
 class CloudbakeExtension {
   constructor(loader) {
     this.name = 'cloudbake';
@@ -321,6 +431,24 @@ class CloudbakeExtension {
   }
 
   dispose() { this.loader = null; }
+
+  loadSceneAsync(context, scene) {
+    const impostor = impostorSettingsOf(this.loader.gltf);
+    return impostor && this.loader.loadSceneAsync(context, scene).then(() => this.makeImpostor(impostor));
+  }
+
+  async makeImpostor({ textures, ...settings }) {
+    const { gltf, babylonScene, rootBabylonMesh } = this.loader, { center, radius } = settings;
+    const [lobeTexture, restTexture] = await Promise.all([textures.lobe, textures.rest].map(async number => {
+      const { bufferView } = gltf.images[gltf.textures[number].source];
+      return atlasTexture(await this.loader.loadBufferViewAsync(`/bufferViews/${bufferView}`, gltf.bufferViews[bufferView]), babylonScene);
+    }));
+    const material = new ImpostorMaterial('impostor', babylonScene, { ...settings, lobeTexture, restTexture });
+    for (const mesh of rootBabylonMesh.getChildMeshes(false, one => one instanceof Mesh && one.getTotalVertices() > 0)) {
+      mesh.material = material;
+      mesh.setBoundingInfo(new BoundingInfo(...[-radius, radius].map(reach => Vector3.FromArray(center.map(x => x + reach)))));
+    }
+  }
 
   onReady() {
     const { gltf, babylonScene, rootBabylonMesh } = this.loader, settings = settingsOf(gltf);

@@ -74,6 +74,29 @@ export interface Lobes<Color, Depth, Lamp> {
   lamps: Lamp[];
 }
 
+/** An impostor, and how it is lit. The loader plugin reads all but the colours from the file. */
+export interface ImpostorLobes<Color, Texture> {
+  ambientSky: Color;
+  ambientGround: Color;
+  /** k of the lobes. */
+  exponent: number;
+  /** σ, per world unit. */
+  extinction: number;
+  /** Whether the sunlight is that of a fit to the volume, which volumeGain brightens. */
+  ofVolume: boolean;
+  /** A factor of that sunlight, up to all of it: 1.4 as in the painted look of `cloudbake preview`, 1 as CloudMaterial. */
+  volumeGain: number;
+  phase: Phase;
+  /** Of the ball that the pictures show, in the space of the mesh. */
+  center: number[];
+  radius: number;
+  /** Views along a side of the atlas, pixels to a side of a view, the last mip level that is used, and the thickness of the value 1. */
+  atlas: number[];
+  /** The pictures `lobe` and `rest`: linear values, mip levels, clamped. */
+  lobeTexture: Texture | null;
+  restTexture: Texture | null;
+}
+
 /** The colours of the sky. */
 export interface SkyColors<Color> {
   zenith: Color;

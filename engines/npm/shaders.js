@@ -179,3 +179,56 @@ export const TONE = `
 
 uniform float exposure;
 `;
+
+// The square of an impostor turns to the eye: what its pixels need.
+export const IMPOSTOR_VARYINGS = `
+varying vec3 impostor_place, impostor_ray, impostor_to_eye;  // in radii of the impostor, from its center
+varying vec3 impostor_right, impostor_up, impostor_back;     // the columns of the matrix that places it
+varying float impostor_texels;
+varying vec3 cloud_view;
+`;
+
+// Writes them. A corner of the square is -1 or 1 to the right and upwards.
+export const IMPOSTOR_SQUARE = `
+#include "impostor.glsl"
+uniform vec3 impostor_center;
+uniform float impostor_radius;
+uniform float impostor_scale;  // world units per pixel of the picture; of a camera with perspective at the distance 1
+uniform vec4 impostor_atlas;
+
+// The place of a corner in the world. 'axis' leads from the scene to a camera without perspective, else 'eye' is its place.
+vec3 cornerInWorld(vec2 corner, mat4 to_world, vec3 eye, vec3 axis, bool has_perspective) {
+  mat3 linear = mat3(to_world);
+  vec3 center = (to_world * vec4(impostor_center, 1.0)).xyz;
+  vec3 own_eye = inverse(linear) * (has_perspective ? eye - center : axis) / impostor_radius;
+  impostor_to_eye = normalize(own_eye);
+  impostor_place = impostorCorner(corner, own_eye, has_perspective);
+  impostor_ray = impostorRay(impostor_place, own_eye, has_perspective);
+  impostor_right = linear[0];
+  impostor_up = linear[1];
+  impostor_back = linear[2];
+  float size = pow(abs(determinant(linear)), 1.0 / 3.0) * impostor_radius;
+  impostor_texels = impostorTexels((has_perspective ? length(eye - center) : 1.0) * impostor_scale, size, impostor_atlas.y);
+  return center + linear * (impostor_place * impostor_radius);
+}
+`;
+
+// The colour of a pixel, which is lit, and its opacity.
+export const IMPOSTOR_PIXEL = `
+uniform highp sampler2D impostor_lobe, impostor_rest;
+uniform vec4 impostor_atlas;
+#include "impostor.glsl"
+#include "impostor_atlas.glsl"
+#include "lobe.glsl"
+uniform float impostor_exponent, extinction, volume_gain;
+
+// The shares of the light of sun and sky, and the opacity.
+vec3 impostorLight(vec3 to_sun_) {
+  vec3 rest;
+  vec4 own = impostorSeen(impostor_place, impostor_ray, normalize(impostor_to_eye), impostor_texels, rest);
+  vec4 lobe = lobeInWorld(own, mat3(impostor_right, impostor_up, impostor_back));
+  float sun = rest.x * lobeTransmittance(lobe, to_sun_, vec2(impostor_exponent, 0.0), extinction);
+  float sky = rest.x * lobeTransmittance(lobe, vec3(0.0, 1.0, 0.0), vec2(impostor_exponent, 0.0), extinction);
+  return vec3(min(volume_gain * sun, 1.0), sky, rest.z);
+}
+`;

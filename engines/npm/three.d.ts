@@ -1,7 +1,7 @@
-import type { BufferGeometry, Camera, Color, ColorRepresentation, DepthTexture, DirectionalLight, LOD, Material, Mesh, PointLight,
-  ShaderMaterial, ShaderMaterialParameters, SpotLight, Texture, Vector3 } from 'three';
+import type { BufferGeometry, Camera, Color, ColorRepresentation, DepthTexture, DirectionalLight, InstancedMesh, LOD, Material, Mesh,
+  PointLight, ShaderMaterial, ShaderMaterialParameters, SpotLight, Texture, Vector3 } from 'three';
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
-import type { Lobes, Phase, ShadowFrame, SkyColors, Sun } from './settings.js';
+import type { ImpostorLobes, Lobes, Phase, ShadowFrame, SkyColors, Sun } from './settings.js';
 
 export type { Phase };
 
@@ -46,6 +46,27 @@ export class CloudMaterial extends ShaderMaterial {
 }
 export interface CloudMaterial extends CloudSettings {}
 
+export interface ImpostorSettings extends SunlitSettings, ImpostorLobes<Color, Texture> {}
+export type ImpostorMaterialParameters = Given<ImpostorSettings>
+  & Omit<ShaderMaterialParameters, keyof ImpostorSettings | 'uniforms' | 'vertexShader' | 'fragmentShader'>;
+
+/**
+ * A lobe impostor (`cloudbake impostor`), lit like the cloud: for the square of `impostorSquare`, which it turns to the camera. Nodes,
+ * instances and batches may be moved, turned, mirrored and scaled.
+ */
+export class ImpostorMaterial extends ShaderMaterial {
+  constructor(parameters?: ImpostorMaterialParameters);
+}
+export interface ImpostorMaterial extends ImpostorSettings {}
+
+/** The square that a material's impostor is drawn on, with the bounds of its ball. */
+export function impostorSquare(material: Pick<ImpostorSettings, 'center' | 'radius'>): BufferGeometry;
+/**
+ * Puts the instances of a mesh into the order in which they must be drawn, the farthest from the camera first. Call it before a picture
+ * from another place.
+ */
+export function sortImpostors(mesh: InstancedMesh, camera: Camera): void;
+
 /** The sky of `cloudbake preview`, for a mesh that covers the screen and cameras with perspective. */
 export class SkyMaterial extends ShaderMaterial {
   constructor(parameters?: SkyMaterialParameters);
@@ -57,11 +78,14 @@ export class CloudSky extends Mesh<BufferGeometry, SkyMaterial> {
   constructor(material?: SkyMaterial);
 }
 
-/** Reads asset.extras.cloudbake: `loader.register(parser => new CloudbakeLoaderPlugin(parser))`. */
+/** Reads asset.extras.cloudbake of assets and impostors: `loader.register(parser => new CloudbakeLoaderPlugin(parser))`. */
 export class CloudbakeLoaderPlugin implements GLTFLoaderPlugin {
-  constructor(parser: GLTFParser, parameters?: CloudMaterialParameters);
+  constructor(parser: GLTFParser, parameters?: CloudMaterialParameters | ImpostorMaterialParameters);
   readonly name: 'cloudbake';
-  /** Draws the meshes that have lobes with one CloudMaterial, which it also stores in gltf.userData.cloudMaterial. */
+  /**
+   * Draws the meshes that have lobes with one CloudMaterial, which it also stores in gltf.userData.cloudMaterial, and the square of an
+   * impostor with an ImpostorMaterial, gltf.userData.impostorMaterial.
+   */
   afterRoot(gltf: GLTF): Promise<void>;
 }
 

@@ -1,11 +1,12 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
-import { Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, LOD, LinearFilter, Matrix3, Mesh, NoColorSpace, ShaderMaterial,
-  TextureLoader, UniformsLib, UniformsUtils, Vector2, Vector3 } from 'three';
-import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, settingsOf, skyDefaults, shadowValues, softValues, sunDefaults,
-  switchPixelsOf } from './asset.js';
+import { Box3, BufferAttribute, BufferGeometry, ClampToEdgeWrapping, Color, DoubleSide, LOD, LinearFilter, LinearMipmapLinearFilter,
+  Matrix3, Matrix4, Mesh, NoColorSpace, ShaderMaterial, Sphere, TextureLoader, UniformsLib, UniformsUtils, Vector2, Vector3,
+  Vector4 } from 'three';
+import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, impostorDefaults, impostorSettingsOf, settingsOf, skyDefaults, shadowValues,
+  softValues, sunDefaults, switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
-import { CAST_SHADOW, CHANNELS, LAMPS, PIXEL_COLOR, SHADE, SKY_COLOR, SOFT, TONE, VARYINGS, harmonicNames, vertexLight,
-  writeVaryings } from './shaders.js';
+import { CAST_SHADOW, CHANNELS, IMPOSTOR_PIXEL, IMPOSTOR_SQUARE, IMPOSTOR_VARYINGS, LAMPS, PIXEL_COLOR, SHADE, SKY_COLOR, SOFT, TONE,
+  VARYINGS, harmonicNames, vertexLight, writeVaryings } from './shaders.js';
 import { SOLID_DISTANCE } from './three_depth.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
@@ -121,6 +122,52 @@ void main() {
 }
 `;
 
+const IMPOSTOR_VERTEX = `
+#include <common>
+#include <batching_pars_vertex>
+#include <fog_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+${IMPOSTOR_VARYINGS}
+${IMPOSTOR_SQUARE}
+void main() {
+  #include <batching_vertex>
+  mat4 to_world = modelMatrix;
+  #ifdef USE_INSTANCING
+    to_world *= instanceMatrix;
+  #endif
+  #ifdef USE_BATCHING
+    to_world *= batchingMatrix;
+  #endif
+  vec3 axis = vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]);
+  vec3 place = cornerInWorld(position.xy, to_world, cameraPosition, axis, !isOrthographic);
+  vec4 mvPosition = viewMatrix * vec4(place, 1.0);
+  gl_Position = projectionMatrix * mvPosition;
+  #include <logdepthbuf_vertex>
+  #include <fog_vertex>
+  cloud_view = isOrthographic ? -axis : place - cameraPosition;
+}
+`;
+
+const IMPOSTOR_FRAGMENT = `
+#include <common>
+#include <dithering_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+${IMPOSTOR_VARYINGS}
+${PIXEL_COLOR}
+${TONE}
+${IMPOSTOR_PIXEL}
+void main() {
+  #include <logdepthbuf_fragment>
+  vec3 light = impostorLight(to_sun);
+  if (!(light.z > 0.0)) discard;
+  gl_FragColor = vec4(colorOfPixel(light.xy, cloud_view), light.z);
+  ${TO_SCREEN}
+  #include <fog_fragment>
+  #include <dithering_fragment>
+}
+`;
+
 const SKY_VERTEX = `
 varying vec3 sky_view;
 
@@ -143,7 +190,7 @@ void main() {
 }
 `;
 
-const target = new Vector3(), colorOf = rgb => new Color(...rgb);
+const target = new Vector3(), viewport = new Vector4(), colorOf = rgb => new Color(...rgb);
 
 /** @typedef {import('./three.d.ts').CloudSettings} Settings */
 
@@ -322,6 +369,103 @@ export class CloudMaterial extends SunlitMaterial {
 
 addSoftSettings(CloudMaterial);
 
+// For the square of an impostor (impostorSquare), which turns to the camera by itself: `cloudbake impostor` makes the atlas.
+export class ImpostorMaterial extends SunlitMaterial {
+  /** @type {Settings['ambientSky']} */ ambientSky;
+  /** @type {Settings['ambientGround']} */ ambientGround;
+  /** @type {Settings['exponent']} */ exponent;
+  /** @type {Settings['extinction']} */ extinction;
+  /** @type {Settings['ofVolume']} */ ofVolume;
+  /** @type {number} */ volumeGain;
+  /** @type {number[]} */ center;
+  /** @type {number} */ radius;
+  /** @type {number[]} */ atlas;
+  /** @type {import('three').Texture | null} */ lobeTexture;
+  /** @type {import('three').Texture | null} */ restTexture;
+
+  constructor(parameters = {}) {
+    const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
+    const own = Object.fromEntries(['impostor_lobe', 'impostor_rest', 'impostor_atlas', 'impostor_center', 'impostor_radius',
+      'impostor_scale', 'impostor_exponent', 'extinction', 'volume_gain'].map(name => [name, { value: null }]));
+    super({ ...colors, ...own, phase: { value: new Vector3() } },
+      { vertexShader: IMPOSTOR_VERTEX, fragmentShader: IMPOSTOR_FRAGMENT, transparent: true, depthWrite: false, side: DoubleSide });
+    this.type = 'ImpostorMaterial';
+    this.isImpostorMaterial = true;
+    this.fog = true;
+    Object.assign(this, impostorDefaults(colorOf));
+    this.setValues(parameters);
+  }
+
+  get phase() { return this.scattering; }
+  set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
+
+  onBeforeRender(...given) {
+    const [renderer, , camera] = given, { elements } = camera.projectionMatrix;
+    this.uniforms.impostor_scale.value = 2 / (elements[5] * renderer.getCurrentViewport(viewport).w);
+    super.onBeforeRender();
+  }
+
+  writeUniforms() {
+    const { uniforms } = this;
+    uniforms.sun_color.value.copy(this.sunColor);
+    uniforms.ambient_sky.value.copy(this.ambientSky);
+    uniforms.ambient_ground.value.copy(this.ambientGround);
+    uniforms.impostor_exponent.value = this.exponent;
+    uniforms.extinction.value = this.extinction;
+    uniforms.volume_gain.value = this.ofVolume ? this.volumeGain : 1;
+    uniforms.phase.value.set(this.phase.share, this.phase.asymmetry, this.phase.limit);
+    uniforms.impostor_center.value = this.center;
+    uniforms.impostor_radius.value = this.radius;
+    uniforms.impostor_atlas.value = this.atlas;
+    uniforms.impostor_lobe.value = this.lobeTexture;
+    uniforms.impostor_rest.value = this.restTexture;
+  }
+
+  copy(source) {
+    super.copy(source);
+    this.ambientSky.copy(source.ambientSky);
+    this.ambientGround.copy(source.ambientGround);
+    const own = ['exponent', 'extinction', 'ofVolume', 'volumeGain', 'phase', 'center', 'radius', 'atlas', 'lobeTexture', 'restTexture'];
+    for (const key of own) this[key] = source[key];
+    return this;
+  }
+}
+
+// The square of a material's impostor. Its bounds are those of the ball.
+export function impostorSquare({ center, radius }) {
+  const square = new BufferGeometry().setAttribute('position',
+    new BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3)).setIndex([0, 1, 2, 0, 2, 3]);
+  const middle = new Vector3(...center), reach = new Vector3(radius, radius, radius);
+  square.boundingSphere = new Sphere(middle, radius);
+  square.boundingBox = new Box3(middle.clone().sub(reach), middle.clone().add(reach));
+  return square;
+}
+
+// Puts the instances of an InstancedMesh of impostors into the order in which they must be drawn: the farthest from the camera first.
+export function sortImpostors(mesh, camera) {
+  const { count, instanceMatrix: { array }, instanceColor } = mesh, eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
+  const { center } = mesh.geometry.boundingSphere, matrix = new Matrix4(), copy = array.slice(0, 16 * count);
+  const colors = instanceColor?.array.slice(0, 3 * count);
+  mesh.updateWorldMatrix(true, false);
+  const order = Array.from({ length: count }, (_, i) => {
+    mesh.getMatrixAt(i, matrix);
+    return { i, away: target.copy(center).applyMatrix4(matrix).applyMatrix4(mesh.matrixWorld).distanceToSquared(eye) };
+  }).sort((a, b) => b.away - a.away || a.i - b.i);
+  if (order.every(({ i }, at) => i === at)) return;
+  order.forEach(({ i }, at) => {
+    array.set(copy.subarray(16 * i, 16 * i + 16), 16 * at);
+    if (colors) instanceColor.array.set(colors.subarray(3 * i, 3 * i + 3), 3 * at);
+  });
+  mesh.instanceMatrix.needsUpdate = true;
+  if (colors) instanceColor.needsUpdate = true;
+}
+
+// A texture of an atlas, as its shader reads it.
+function asAtlas(texture) {
+  return Object.assign(texture, { colorSpace: NoColorSpace, minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter,
+    generateMipmaps: true, wrapS: ClampToEdgeWrapping, wrapT: ClampToEdgeWrapping, needsUpdate: true });
+}
+
 // For a mesh that covers the screen, such as CloudSky, and cameras with perspective.
 export class SkyMaterial extends SunlitMaterial {
   constructor(parameters = {}) {
@@ -357,7 +501,8 @@ export class CloudSky extends Mesh {
 }
 
 // loader.register(parser => new CloudbakeLoaderPlugin(parser)): meshes of baked files are drawn with one CloudMaterial, which is also
-// gltf.userData.cloudMaterial. `parameters`: those of the material.
+// gltf.userData.cloudMaterial; the square of an impostor with an ImpostorMaterial, gltf.userData.impostorMaterial. `parameters`: those of
+// the material.
 export class CloudbakeLoaderPlugin {
   constructor(parser, parameters = {}) {
     this.name = 'cloudbake';
@@ -366,6 +511,8 @@ export class CloudbakeLoaderPlugin {
   }
 
   async afterRoot(gltf) {
+    const impostor = impostorSettingsOf(this.parser.json);
+    if (impostor) return this.makeImpostor(gltf, impostor);
     const settings = settingsOf(this.parser.json);
     if (!settings) return;
     const names = settings.uvSets.map(nameOfSet), clouds = [], has = ({ geometry }, all) => all.every(name => geometry.hasAttribute(name));
@@ -384,6 +531,15 @@ export class CloudbakeLoaderPlugin {
     }
     gltf.userData.cloudMaterial = material;
     gltf.userData.cloudSwitchPixels = switchPixelsOf(this.parser.json);
+  }
+
+  // A picture of its own per texture: one that the loader shares with the file's material may have been made for it.
+  async makeImpostor(gltf, { textures, ...settings }) {
+    const [lobeTexture, restTexture] = (await Promise.all([textures.lobe, textures.rest].map(number =>
+      this.parser.getDependency('texture', number)))).map(texture => asAtlas(texture.clone()));
+    const material = new ImpostorMaterial({ ...settings, lobeTexture, restTexture, ...this.parameters }), square = impostorSquare(material);
+    for (const scene of gltf.scenes) scene.traverse(mesh => { if (mesh.isMesh) Object.assign(mesh, { geometry: square, material }); });
+    gltf.userData.impostorMaterial = material;
   }
 }
 

@@ -12,6 +12,12 @@ public static class CloudbakeAsset
         public int[] uv_sets;
         public string fit_to;
         public float switch_pixels;  // of a level of detail: the most that the longest side may cover
+        // Of an impostor:
+        public string layout;
+        public int views, frame;
+        public float radius, thickest;
+        public float[] center;
+        public bool gains;
     }
 
     // The frame of a shadow's picture, in the space of glTF.
@@ -47,6 +53,7 @@ public static class CloudbakeAsset
     // Why a shader that reads the lobes from `set` cannot draw an asset; null if it can.
     public static string FaultOf(Lobes lobes, int set)
     {
+        if (IsImpostor(lobes)) return "it is an impostor: choose Assets > Cloudbake > Create Impostor";
         if (lobes == null || lobes.uv_sets == null || lobes.uv_sets.Length == 0)
             return "there is no asset.extras.cloudbake in it: bake it with cloudbake";
         foreach (var number in new[] { lobes.exponent, lobes.bias, lobes.extinction })
@@ -54,6 +61,16 @@ public static class CloudbakeAsset
                 return "exponent, bias or extinction in asset.extras.cloudbake is not finite: bake it again";
         return lobes.uv_sets[0] == set ? null : "its lobes are in UV set " + lobes.uv_sets[0] + ", and the shaders read set " + set
             + ": write the shaders for this asset (cloudbake shader unity ASSET.glb -o DIR)";
+    }
+
+    public static bool IsImpostor(Lobes lobes) => lobes != null && lobes.layout == "lobe-impostor";
+
+    // Of the mip levels of an impostor's atlas: down to 4 pixels to a side of a view.
+    public static int LastLevel(int frame)
+    {
+        var level = 0;
+        for (; frame % 2 == 0 && frame >= 8; frame /= 2) ++level;
+        return level;
     }
 
     // cloud_lod1.glb of cloud.glb.

@@ -13,6 +13,7 @@
 #include "core/affine.h"
 #include "core/error.h"
 #include "core/harmonics.h"
+#include "core/impostor.h"
 #include "core/portable_math.h"
 #include "io/gltf/asset_info.h"
 #include "pipeline/page/layer_data.h"
@@ -41,6 +42,17 @@ void refuseWhatIsNotShown(const SceneFile& scene) {
   if (scene.view.plain && !(scene.lamps.empty() && scene.lightning.empty()))
     throw UsageError("view shows lamps and lightning in the painted look: leave out --look plain");
   if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
+}
+
+// Impostors where the page cannot draw them as `preview` does.
+void refuseImpostors(const Scenery& scenery) {
+  const auto isImpostor = [](const Instance& one) { return one.mesh->impostor != nullptr; };
+  for (const DrawnField& field : scenery.fields)
+    if (std::ranges::any_of(field.meshes, isImpostor))
+      throw UsageError("view draws no impostors in a field of clouds: place them, or take the clouds themselves");
+  if (std::ranges::none_of(scenery.instances, isImpostor) || !drawsShadows(scenery.scene)) return;
+  if (isLayered(scenery.scene) || !scenery.fields.empty() || !std::ranges::all_of(scenery.instances, isImpostor))
+    throw UsageError("view draws no shadows on impostors: set shadows = false in [light]");
 }
 
 // --- Looks ---
@@ -326,7 +338,8 @@ struct Meshes {
   std::vector<const ShadowCaster*> casters;
   int harmonic_order = 0;  // the largest of all clouds
   bool compares = false, are_colored = false;
-  Json parts = Json::array(), corners = Json::array();
+  std::vector<const Impostor*> impostors;
+  Json parts = Json::array(), corners = Json::array(), placed_impostors = Json::array();
 };
 
 // The coefficients of each vertex, padded to whole vectors of four.
@@ -442,8 +455,33 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   all.parts.push_back(std::move(part));
 }
 
+// An impostor, without the box that stands for it.
+void appendImpostor(Meshes& all, const Instance& instance, const SceneFile& scene) {
+  const Impostor& impostor = *instance.mesh->impostor;
+  const ImpostorInfo& info = impostor.info;
+  const auto known = std::find(all.impostors.begin(), all.impostors.end(), &impostor);
+  Affine to_radii = inverted(instance.to_world).value();
+  for (auto& row : to_radii.linear)
+    for (double& entry : row) entry /= double(info.radius);
+  all.placed_impostors.push_back({{"picture", known - all.impostors.begin()},
+                                  {"atlas", {info.views, info.frame, impostor.lobe.size() - 1, shortest(info.thickest)}},
+                                  {"center", jsonOf(transformPoint(instance.to_world, info.center))},
+                                  {"radius", shortest(info.radius * unitScale(instance.to_world))},
+                                  {"to_own", linearJson(to_radii)},
+                                  {"to_world", linearJson(instance.to_world)},
+                                  {"exponent", shortest(info.exponent)},
+                                  {"extinction", shortest(worldExtinction(instance, scene.light))},
+                                  {"gains", info.gains}});
+  if (known == all.impostors.end()) all.impostors.push_back(&impostor);
+  Box ball;
+  const Vec3 reach{info.radius, info.radius, info.radius};
+  ball.add(info.center - reach), ball.add(info.center + reach);
+  for (int i = 0; i < 8; ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, ball.corner(i))));
+}
+
 // A cloud, then its levels, which the page draws in its place where it is small: the rule of preview/mesh_clouds/levels.h.
 void appendWithLevels(Meshes& all, const Instance& instance, const Scenery& scenery) {
+  if (instance.mesh->impostor) return appendImpostor(all, instance, scenery.scene);
   const size_t full = all.parts.size();
   appendInstance(all, instance, scenery);
   if (instance.levels.empty()) return;
@@ -474,6 +512,14 @@ Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
   return {{"direction_steps", steps}};
 }
 
+// Three bytes per pixel.
+std::vector<uint8_t> bytesOf(const Image& picture) {
+  std::vector<uint8_t> bytes;
+  for (const Vec3& pixel : picture.pixels)
+    for (const float value : {pixel.x, pixel.y, pixel.z}) bytes.push_back(uint8_t(std::lround(255 * std::clamp(value, 0.0F, 1.0F))));
+  return bytes;
+}
+
 // Packs what comes after the positions; `layered`: the scene whose layers are packed with it, or null.
 Json meshJson(Meshes& meshes, const SceneFile* layered) {
   MeshPacker& packer = meshes.packer;
@@ -489,6 +535,10 @@ Json meshJson(Meshes& meshes, const SceneFile* layered) {
   for (const ShadowCaster* caster : meshes.casters) {
     packer.addBytes(caster->fractions);
     json["fields"].push_back(caster->fractions.size());
+  }
+  for (const Impostor* impostor : meshes.impostors) {
+    for (const Image& picture : {impostor->lobe.front(), impostor->rest.front()}) packer.addBytes(bytesOf(picture));
+    json["impostors"].push_back(3 * impostor->lobe.front().pixels.size());
   }
   if (layered) json["layers"] = packedLayers(*layered, packer);
   json["data"] = packer.packed();
@@ -562,7 +612,8 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const SunTable suns = sunTable(scenery);
   const std::vector<Instance> instances = instancesAt(scenery, file.view);
   Meshes meshes = meshesOf(scenery.instances, scenery);
-  if (meshes.triangles.empty() && scenery.fields.empty() && !isLayered(file))
+  refuseImpostors(scenery);
+  if (meshes.triangles.empty() && meshes.impostors.empty() && scenery.fields.empty() && !isLayered(file))
     throw UsageError("view needs a cloud with triangles, or another layer");
 
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
@@ -606,6 +657,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   for (const DrawnField& field : scenery.fields)
     for (int i = 0; i < 8; ++i) meshes.corners.push_back(jsonOf(boxOf(field).corner(i)));
   scene["parts"] = std::move(meshes.parts);
+  if (!meshes.impostors.empty()) scene["impostors"] = std::move(meshes.placed_impostors);
   scene["corners"] = std::move(meshes.corners);
   return {std::move(scene), looksOf(file, suns)};
 }

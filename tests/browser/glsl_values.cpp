@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/harmonics.h"
+#include "core/impostor.h"
 #include "core/lobe_lighting.h"
 #include "core/lobe_packing.h"
 #include "core/parallel.h"
@@ -65,6 +66,95 @@ std::vector<Function> lobeFunctions() {
            "unpackLobe(vec2(p[0].x, 1.0 - p[0].y), vec2(p[0].z, 1.0 - p[0].w), 0.0)", 3e-7, 0, [](Draws& draw) {
              const Texel values{draw.between(-1, 1), draw.between(-1, 1), draw.between(-1, 1), draw.between(0, 3)};
              return Point{{values}, values};
+           }}};
+}
+
+// Frames, their places and their texels.
+std::vector<Function> impostorFunctions() {
+  // Of half of the points the eye looks along an axis or nearly so, or from a fold of the map.
+  const auto eyeOf = [](Draws& draw) {
+    Vec3 eye = draw.direction();
+    const float kind = draw.between(0, 1);
+    if (kind < 0.1F) eye = {0, eye.y < 0 ? -1.0F : 1.0F, 0};
+    if (kind > 0.1F && kind < 0.3F) eye = *normalized(Vec3{eye.x * 0.02F, eye.y < 0 ? -1.0F : 1.0F, eye.z * 0.02F});
+    return kind > 0.5F ? draw.direction() : eye;
+  };
+  const auto viewsOf = [](Draws& draw) { return int(draw.between(2, 17)); };
+  const auto directions = [=](Draws& draw) {
+    const int views = viewsOf(draw), i = int(draw.between(0, float(views))), j = int(draw.between(0, float(views)));
+    return Point{{{float(i), float(j), float(views), 0}}, texel(frameDirection(i, j, views))};
+  };
+  // The direction of the mean of frames: weights of frames may change places where one of them is 0.
+  const auto frames = [=](Draws& draw) {
+    const int views = viewsOf(draw);
+    const Vec3 eye = eyeOf(draw);
+    Vec3 mean;
+    float squares = 0;
+    for (const FrameWeight& frame : framesAround(eye, views)) {
+      mean += frameDirection(frame.i, frame.j, views) * frame.weight;
+      squares += frame.weight * frame.weight;
+    }
+    return Point{{texel(eye, float(views))}, texel(mean, squares)};
+  };
+  const auto axes = [=](Draws& draw) {
+    const Vec3 eye = eyeOf(draw), place{draw.between(-1, 1), draw.between(-1, 1), draw.between(-1, 1)};
+    const FrameAxes own = frameAxes(eye);
+    Vec3 ray = draw.direction();
+    if (dot(ray, eye) > -0.2F) ray = ray * 0.3F - eye;
+    const float height = draw.between(-1, 1), t = (height - dot(place, own.to_eye)) / dot(ray, own.to_eye);
+    return Point{{texel(eye), texel(place, height), texel(ray)},
+                 {0.5F + 0.5F * dot(place, own.right), 0.5F - 0.5F * dot(place, own.up), t, 0}};
+  };
+  const auto lobes = [=](Draws& draw) {
+    const Vec3 eye = eyeOf(draw);
+    const FrameAxes own = frameAxes(eye);
+    const Vec2 encoded = encodedDirection(draw.direction(), own);
+    const float root = draw.between(0, 1), thickest = draw.between(0.5F, 3);
+    return Point{{texel(eye, thickest), {encoded.x, encoded.y, root, 0}},
+                 texel(*normalized(decodedDirection(encoded, own)), root * root * thickest)};
+  };
+  const std::string prelude = R"(
+vec4 meanOfFrames(vec3 to_eye, float views) {
+  vec4 cell = impostorCell(to_eye, views);
+  vec3 weights = impostorWeights(cell, views);
+  vec3 mean = impostorDirection(cell.xy + impostorFirst(cell, views), views) * weights.x
+    + impostorDirection(cell.xy + impostorSecond(cell, views), views) * weights.y
+    + impostorDirection(cell.xy + impostorThird(cell, views), views) * weights.z;
+  return vec4(mean, dot(weights, weights));
+}
+)";
+  const auto places = [](const std::string& eye) {
+    return "vec4(impostorPlace(p[1].xyz, impostorRight(" + eye + "), " + eye + "), impostorReach(p[1].xyz, p[2].xyz, " + eye +
+           ", p[1].w), 0.0)";
+  };
+  const auto lobe = [](const std::string& values) {
+    return "impostorMean(2.0 * impostorLobe(" + values + ", impostorRight(p[0].xyz), p[0].xyz, p[0].w), 2.0)";
+  };
+  return {{"impostor", "impostorDirection", "vec4(impostorDirection(p[0].xy, p[0].z), 0.0)",
+           "vec4(impostorDirection(p[0].xy, p[0].z + 1.0), 0.0)", 1e-6, 0, directions},
+          {"impostor",
+           "impostorCell, its three frames and impostorWeights",
+           "meanOfFrames(p[0].xyz, p[0].w)",
+           "meanOfFrames(p[0].zyx, p[0].w)",
+           2e-5,
+           0,
+           frames,
+           {},
+           prelude},
+          {"impostor", "impostorRight, impostorPlace and impostorReach", places("p[0].xyz"), places("p[0].yxz"), 4e-6, 1e-5, axes},
+          {"impostor", "impostorLobe and impostorMean", lobe("p[1].xyz"), lobe("p[1].yxz"), 2e-6, 2e-6, lobes},
+          {"impostor", "impostorInAtlas and impostorLevel",
+           "vec4(impostorInAtlas(p[0].xy, floor(p[1].xy), p[1].z, p[1].w), impostorLevel(p[0].z, p[0].w), impostorHeight(p[0].x))",
+           "vec4(impostorInAtlas(p[0].yx, floor(p[1].xy), p[1].z, p[1].w), impostorLevel(p[0].z, p[0].w), impostorHeight(p[0].x))", 2e-6,
+           2e-6, [](Draws& draw) {
+             const Vec2 at{draw.between(-0.1F, 1.1F), draw.between(-0.1F, 1.1F)};
+             const float texels = std::exp2(draw.between(-3, 8)), last = std::floor(draw.between(0, 6)), pixels = draw.between(4, 128);
+             const float views = std::floor(draw.between(2, 17)), i = draw.between(0, views), j = draw.between(0, views);
+             const auto inAtlas = [&](float a, float frame) {
+               return (std::floor(frame) + std::clamp(a, 0.5F / pixels, 1 - 0.5F / pixels)) / views;
+             };
+             return Point{{{at.x, at.y, texels, last}, {i, j, views, pixels}},
+                          {inAtlas(at.x, i), inAtlas(at.y, j), std::clamp(std::log2(texels), 0.0F, last), 1 - 2 * at.x}};
            }}};
 }
 
@@ -343,9 +433,9 @@ void write(const std::filesystem::path& file, const std::vector<Texel>& values) 
 int main(int, char** words) {
   const std::filesystem::path folder = words[1];
   nlohmann::json all = nlohmann::json::array();
-  for (const auto& functions :
-       {lobeFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(), castShadowFunctions(), cloudShadeFunctions(),
-        noiseFunctions(), softFunctions(), pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
+  for (const auto& functions : {lobeFunctions(), impostorFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(),
+                                castShadowFunctions(), cloudShadeFunctions(), noiseFunctions(), softFunctions(), pictureFunctions(),
+                                terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
       std::vector<Point> points(f.points);
       parallelFor(f.points, [&](uint32_t i) {

@@ -22,7 +22,8 @@ for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', en
 // The texts of the kit that are evaluated or compiled here. tests/browser/unity.mjs compiles and runs the scripts and the chain.
 const used = new Set(['URP/CloudbakeFeature.cs', 'URP/Cloudbake.Universal.asmdef', 'Editor/CloudbakeMaterials.cs',
   'Editor/Cloudbake.Editor.asmdef', 'Cloudbake.asmdef', 'CloudbakeAsset.cs', 'CloudbakeCamera.cs', 'CloudbakeChain.cs',
-  'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
+  'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeImpostor.cs',
+  'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
 const kit = name => (used.add(name), readFileSync(join(folder, name), 'utf8'));
 
 // --- What is evaluated of an engine ---
@@ -56,9 +57,9 @@ Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
 function nodeOf(head, name) {
   const before = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct (\w+) \{.*?^\};\n/gms, (text, struct) => {
     before.push(struct !== 'Cloudbake' ? text
-      : text.split('\n').slice(1, -2).join('\n').replace(/^(?!Texture2D)(\w+ \w+(, \w+)*;)/gm, 'static $1'));
+      : text.split('\n').slice(1, -2).join('\n').replace(/^(?!Texture2D|SamplerState)(\w+ \w+(, \w+)*;)/gm, 'static $1'));
     return '';
-  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted);$/gm, '')
+  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted|\w+Picture(?:Sampler)?);$/gm, '')
     .replace(/\bcloudbake\./g, '');
   return `${before.join('\n')}\n${head} {\n${body}}\n`;
 }
@@ -72,6 +73,8 @@ const CUSTOM_NODES = {
     float2 Cone`],
   ShadowOfCloud: ['float', `Texture2D<float4> Shadow, SamplerState ShadowSampler, float3 Place, float3 Origin, float3 Right, float3 Up,
     float3 ToSun, float Width, float Height, float Top, float Bottom, float Strength`],
+  Impostor: ['float3', `float3 Place, float3 Eye, float3 ToSun, float3 Up, float Texels, float4 Atlas, float2 Lobe,
+    Texture2D<float4> LobePicture, SamplerState LobePictureSampler, Texture2D<float4> RestPicture, SamplerState RestPictureSampler`],
   SoftOpacity: ['float2', `float3 Normal, float3 View, float3 OwnPlace, float Seconds, float2 Pixel, float Along, float Away, float Solid,
     float2 Rim, float4 Noise, float SoftDistance, float2 NearFade, float2 FarFade`],
   'painted/Channels': ['float3', 'float2 Light, float3 Normal, float3 ToSun, float Along, float2 DepthRange'],
@@ -211,7 +214,20 @@ function compileUnity() {
       for (const [stage, entry] of [['vert', vertex], ['frag', 'fragment']])
         translated(define + own.replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting|"AutoLight)).*$/gm, '')
           .replace(/^ *#include "CloudbakeLook.hlsl"/m, () => look), stage, entry);
+  compileImpostor(stub);
   demand(programs.length === 3, 'the passes of Cloudbake.shader compile: of URP, and ForwardBase and ForwardAdd of the built-in pipeline');
+}
+
+// Its square, and the atlas that it reads.
+function compileImpostor(stub) {
+  const text = kit('unity/CloudbakeImpostor.shader'), own = kit('unity/CloudbakeImpostor.hlsl').replace(/^#include "CloudbakeLobe.hlsl"$/m,
+    () => kit('unity/CloudbakeLobe.hlsl'));
+  const programs = [[/HLSLPROGRAM\n(.*?)ENDHLSL/s, 'urp'], [/CGPROGRAM\n(.*?)ENDCG/s, 'builtin']];
+  for (const [part, name] of programs)
+    for (const [stage, entry] of [['vert', 'vertex'], ['frag', 'fragment']])
+      translated(stub(name) + stub('impostor') + text.match(part)[1].replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting)).*$/gm, '')
+        .replace(/^ *#include "CloudbakeImpostor.hlsl"/m, () => own), stage, entry);
+  demand(true, 'CloudbakeImpostor.shader compiles, for URP and for the built-in pipeline');
 }
 
 // The vertices of the asset, its two sets.

@@ -3,12 +3,14 @@ import { Color, DirectionalLight, DoubleSide, InstancedMesh, Mesh, MeshStandardM
   Vector3, WebGLRenderer } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
-import { CloudLevels, CloudMaterial, CloudShadow, CloudSky, CloudbakeLoaderPlugin, SkyMaterial } from 'cloudbake-materials/three';
+import { CloudLevels, CloudMaterial, CloudShadow, CloudSky, CloudbakeLoaderPlugin, ImpostorMaterial, SkyMaterial, impostorSquare,
+  sortImpostors } from 'cloudbake-materials/three';
 import { PaintedClouds } from 'cloudbake-materials/three/painted';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { DirectionalLight as BabylonLight } from '@babylonjs/core/Lights/directionalLight.js';
 import { LoadAssetContainerAsync } from '@babylonjs/core/Loading/sceneLoader.js';
+import type { AssetContainer } from '@babylonjs/core/assetContainer.js';
 import type { Scene as BabylonScene } from '@babylonjs/core/scene.js';
 import type { Camera } from '@babylonjs/core/Cameras/camera.js';
 import type { StandardMaterial } from '@babylonjs/core/Materials/standardMaterial.js';
@@ -29,6 +31,25 @@ export async function inThree(scene: Scene, light: DirectionalLight): Promise<Cl
     halfLambert: 1, fog: false, harmonicOrder: 2, harmonicExtinction: 3 }).clone();
   scene.add(gltf.scene, new CloudSky(new SkyMaterial({ zenith: new Color(0, 0, 1), exposure: 2 })),
     new InstancedMesh(new Mesh().geometry, other, 10));
+  return material;
+}
+
+export async function farAway(scene: Scene, loader: GLTFLoader, camera: PerspectiveCamera): Promise<ImpostorMaterial> {
+  const gltf = await loader.loadAsync('far/impostor.glb');
+  const material: ImpostorMaterial = gltf.userData.impostorMaterial;
+  material.extinction *= 2;
+  material.phase = { ...material.phase, share: 0.45 };
+  const { lobeTexture, restTexture, center, radius, atlas } = material;
+  const other = new ImpostorMaterial({ lobeTexture, restTexture, center, radius, atlas, sunColor: 0xffeecc, phase: { share: 0.3 } });
+  const many = new InstancedMesh(impostorSquare(other), other, 100);
+  sortImpostors(many, camera);
+  scene.add(gltf.scene, many);
+  return material;
+}
+
+export function farInBabylon(container: AssetContainer): babylon.ImpostorMaterial | null {
+  const material = babylon.impostorMaterialOf(container.meshes);
+  if (material) Object.assign(material, { sunLight: null, phase: { share: 0.45 }, volumeGain: 1.4 });
   return material;
 }
 

@@ -105,7 +105,8 @@ def picture(file):
 
 SETS = re.compile(r"\tvec2 sets\[8\] = \{ .* \};\n")
 # What Godot gives to the stages of a shader, as GLSL.
-GIVEN = {"vertex": "const mat4 MODEL_MATRIX = mat4(1.0); in vec3 NORMAL, VERTEX; in vec2 UV, UV2; in vec4 CUSTOM0, CUSTOM1, CUSTOM2;"
+GIVEN = {"vertex": "const mat4 MODEL_MATRIX = mat4(1.0), INV_VIEW_MATRIX = mat4(1.0), PROJECTION_MATRIX = mat4(1.0);"
+                   "const vec2 VIEWPORT_SIZE = vec2(1.0); vec3 VERTEX; in vec3 NORMAL; in vec2 UV, UV2; in vec4 CUSTOM0, CUSTOM1, CUSTOM2;"
                    "out vec4 POSITION;",
          "fragment": "const mat4 INV_VIEW_MATRIX = mat4(1.0), INV_PROJECTION_MATRIX = mat4(1.0); in vec3 VERTEX, NORMAL, VIEW;"
                      "in vec2 SCREEN_UV; in vec4 FRAGCOORD; uniform float TIME; out vec3 ALBEDO; out float ALPHA; out vec4 COLOR;"}
@@ -118,7 +119,7 @@ def glsl_of(shader, stage, renderer):
     other = "fragment" if stage == "vertex" else "vertex"
     text = re.sub(rf"void {other}\(\) \{{.*?\n\}}\n", "", text, flags=re.S)
     text = text.replace("varying ", "out " if stage == "vertex" else "in ").replace(f"void {stage}()", "void main()")
-    return re.sub(r" : hint_\w+(\([^)]*\))?(, \w+)*", "", text)
+    return re.sub(r" : (hint|filter)_\w+(\([^)]*\))?(, \w+)*", "", text)
 
 
 def compile_godot4(kit, folder):
@@ -139,6 +140,7 @@ def compile_godot4(kit, folder):
 def as_godot3(shader):
     """A shader of Godot 4 in the language of Godot 3: other names, no arrays, no preprocessor, the depths of OpenGL."""
     shader = re.sub(r"uniform sampler2D screen_depth.*;\n", "", SETS.sub("", shader)).replace("screen_depth", "DEPTH_TEXTURE")
+    shader = re.sub(r" : filter_\w+, repeat_disable;", ";", shader)
     shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
     for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"),
                      ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2")):

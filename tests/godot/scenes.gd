@@ -85,6 +85,7 @@ func cloud_at(place, job):
 	var cloud = load("res://%s.glb" % place.asset).instance()
 	cloud.translation = vector(place.get("at", [0, 0, 0]))
 	cloud.scale = Vector3.ONE * place.get("scale", 1.0)
+	cloud.rotation_degrees.y = place.get("turn", 0.0)
 	for node in clouds_of(cloud, []):
 		var material = node.mesh.surface_get_material(0).duplicate()
 		if "shader" in job:

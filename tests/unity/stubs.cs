@@ -148,7 +148,7 @@ namespace UnityEngine
 
     public class Renderer : Component
     {
-        public Bounds bounds;
+        public Bounds bounds, localBounds;
         public Material[] sharedMaterials = new Material[0];
         public Material sharedMaterial { set { sharedMaterials = new[] { value }; } }
     }
@@ -218,6 +218,8 @@ namespace UnityEngine
         public int FindPass(string passName) => shader.name == "Cloudbake/Painted" && passName == "Channels" ? 0 : -1;
         public bool HasProperty(string name) => true;
         public void SetFloat(string name, float value) => floats[name] = value;
+        public void SetVector(string name, Vector4 value) { }
+        public void SetTexture(string name, Texture value) { }
     }
 
     public class Texture : Object
@@ -370,7 +372,7 @@ namespace UnityEditor
         {
             var made = new GameObject(prefab.name);
             made.AddComponent<Renderer>();
-            parent.gameObject.children.Add(made);
+            if (parent) parent.gameObject.children.Add(made);
             return made;
         }
     }
@@ -392,7 +394,14 @@ namespace UnityEditor
         public TextureImporterAlphaSource alphaSource;
         public bool sRGBTexture;
         public TextureWrapMode wrapMode;
+        public bool mipmapEnabled;
+        public int maxTextureSize;
+        public FilterMode filterMode;
+        public TextureImporterNPOTScale npotScale;
+        public TextureImporterCompression textureCompression;
     }
+    public enum TextureImporterNPOTScale { None }
+    public enum TextureImporterCompression { Uncompressed }
     public class SerializedObject
     {
         public SerializedObject(Object target) { }

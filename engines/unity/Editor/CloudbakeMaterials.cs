@@ -24,6 +24,10 @@ public static class CloudbakeMaterials
     [MenuItem("Assets/Cloudbake/Create Painted LOD Group")]
     static void CreatePaintedGroups() => ForEachGlb(path => CreateGroup(path, "Cloudbake/Painted"));
 
+    // In the scene, from the GLB of `cloudbake impostor` and the two pictures beside it.
+    [MenuItem("Assets/Cloudbake/Create Impostor")]
+    static void CreateImpostors() => ForEachGlb(CreateImpostor);
+
     // Makes a shadow's picture the cookie of the scene's sun, which is turned and moved to where it was drawn from.
     [MenuItem("Assets/Cloudbake/Use as Light Cookie")]
     static void UseCookies()
@@ -83,6 +87,55 @@ public static class CloudbakeMaterials
         group.RecalculateBounds();
         if (shader == "Cloudbake/Painted") root.AddComponent<CloudbakeCloud>();
         Undo.RegisterCreatedObjectUndo(root, "Create LOD Group");
+    }
+
+    static void CreateImpostor(string path)
+    {
+        var info = CloudbakeAsset.Read(File.ReadAllBytes(path));
+        if (!CloudbakeAsset.IsImpostor(info))
+        {
+            Debug.LogError(path + ": it is no impostor: make one with `cloudbake impostor`");
+            return;
+        }
+        var center = CloudbakeAsset.Vector(info.center);
+        var material = new Material(Shader.Find("Cloudbake/Impostor")) { enableInstancing = true };
+        foreach (var name in new[] { "lobe", "rest" })
+        {
+            var picture = Path.ChangeExtension(path, null) + "_" + name + ".png";
+            if (!File.Exists(picture))
+            {
+                Debug.LogError(picture + " is missing: `cloudbake impostor` writes it beside the GLB");
+                return;
+            }
+            material.SetTexture("impostor_" + name, Atlas(picture));
+        }
+        material.SetFloat("_Exponent", info.exponent);
+        material.SetFloat("_Extinction", info.extinction);
+        material.SetFloat("_OfVolume", info.gains ? 1 : 0);
+        material.SetVector("_Ball", new Vector4(center.x, center.y, center.z, info.radius));
+        material.SetVector("impostor_atlas", new Vector4(info.views, info.frame, CloudbakeAsset.LastLevel(info.frame), info.thickest));
+        AssetDatabase.CreateAsset(material, AssetDatabase.GenerateUniqueAssetPath(Path.ChangeExtension(path, null) + "_cloud.mat"));
+        var shown = (GameObject)PrefabUtility.InstantiatePrefab(AssetDatabase.LoadAssetAtPath<GameObject>(path), null);
+        foreach (var one in shown.GetComponentsInChildren<Renderer>()) one.sharedMaterial = material;
+        var bounds = shown.AddComponent<CloudbakeImpostor>();
+        bounds.center = center;
+        bounds.radius = info.radius;
+        Undo.RegisterCreatedObjectUndo(shown, "Create Impostor");
+    }
+
+    // A picture of an atlas, imported as the numbers that it has.
+    static Texture2D Atlas(string path)
+    {
+        var importer = (TextureImporter)AssetImporter.GetAtPath(path);
+        importer.sRGBTexture = false;
+        importer.mipmapEnabled = true;
+        importer.wrapMode = TextureWrapMode.Clamp;
+        importer.filterMode = FilterMode.Trilinear;
+        importer.npotScale = TextureImporterNPOTScale.None;
+        importer.textureCompression = TextureImporterCompression.Uncompressed;
+        importer.maxTextureSize = 16384;
+        importer.SaveAndReimport();
+        return AssetDatabase.LoadAssetAtPath<Texture2D>(path);
     }
 
     static void UseCookie(string path)
