@@ -311,7 +311,8 @@ export class CloudMaterial extends SunlitMaterial {
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
     const own = ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume', 'harmonicOrder',
-      'harmonicExtinction', 'rimFrequency', 'rimScroll', 'insideLight', 'ditherShift', 'depthTexture', 'lamps', ...SOFT_NAMES, 'soft', 'cloudShade'];
+      'harmonicExtinction', 'rimFrequency', 'rimScroll', 'insideLight', 'ditherShift', 'depthTexture', 'lamps', ...SOFT_NAMES, 'soft',
+      'cloudShade'];
     for (const key of own) this[key] = source[key];
     return this;
   }
