@@ -91,7 +91,8 @@ export class CloudShade {
 
   /**
    * Multiplies the shares of the light of the vertices of a placed part by what the clouds of the grid let through.
-   * @param {Part} part @param {Part} whole the part, or that of which it is a level @param {Float32Array} positions @param {Float32Array} shares
+   * @param {Part} part @param {Part} whole the part, or that of which it is a level
+   * @param {Float32Array} positions @param {Float32Array} shares
    */
   darken(part, whole, positions, shares) {
     const { grid } = this, { first_vertex, vertices } = part;

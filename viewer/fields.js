@@ -8,7 +8,8 @@ import { indexType, litBy, sampleOf } from './vertices.js';
 const NUMBERS = 6;  // of a cloud in field.clouds
 const PER_CLOUD = 11;  // floats on the graphics card: three vectors
 const LEAST_SHRINK = 1e-3;
-const LIGHT = { size: [1, 1, 1], numbers: Float32Array.of(1), shifts: new Float32Array(0) }, STILL = [0, 0, 0];  // of clouds in nobody's shade
+const LIGHT = { size: [1, 1, 1], numbers: Float32Array.of(1), shifts: new Float32Array(0) };  // of clouds in nobody's shade
+const STILL = [0, 0, 0];
 const NO_ROWS = [0, 1, 2].map(() => [0, 0, 0, 0]);
 
 /** Where a cloud of a field is at a time: its place, the factor of its size, and cosine and sine of its turn. @param {Field} field */

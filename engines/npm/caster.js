@@ -35,18 +35,21 @@ export function casterOf(positions, triangles, cells_across = 16) {
 // Where ways meet triangles, in cells from the first cell's end, by the number of the way.
 function crossingsOf(positions, triangles, origin, cell_size, cells) {
   const found = new Map(), columns = PLACES * cells[0], rows = PLACES * cells[1];
-  const placeOf = vertex => [0, 1, 2].map(axis => ((positions[3 * vertex + axis] - origin[axis]) / cell_size + 0.5) * (axis < 2 ? PLACES : 1));
+  const placeOf = vertex => [0, 1, 2].map(axis =>
+    ((positions[3 * vertex + axis] - origin[axis]) / cell_size + 0.5) * (axis < 2 ? PLACES : 1));
   // A way through an edge is a hair beside it, on the same side for both triangles.
   const [shift_x, shift_y] = [0.5 + 1.23e-7, 0.5 + 2.71e-7];
   for (let t = 0; t < triangles.length; t += 3) {
     const [a, b, c] = [0, 1, 2].map(corner => placeOf(triangles[t + corner]));
     const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if (area === 0) continue;
-    const [x0, x1] = [Math.min(a[0], b[0], c[0]), Math.max(a[0], b[0], c[0])], [y0, y1] = [Math.min(a[1], b[1], c[1]), Math.max(a[1], b[1], c[1])];
+    const [x0, x1] = [Math.min(a[0], b[0], c[0]), Math.max(a[0], b[0], c[0])];
+    const [y0, y1] = [Math.min(a[1], b[1], c[1]), Math.max(a[1], b[1], c[1])];
     for (let j = Math.max(0, Math.floor(y0 - 1)); j < Math.min(rows, y1); ++j)
       for (let i = Math.max(0, Math.floor(x0 - 1)); i < Math.min(columns, x1); ++i) {
         const x = i + shift_x, y = j + shift_y;
-        const p = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area, q = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area;
+        const p = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area;
+        const q = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area;
         if (p < 0 || q < 0 || p + q > 1) continue;
         const way = j * columns + i, crossing = { at: p * a[2] + q * b[2] + (1 - p - q) * c[2], sign: area < 0 ? 1 : -1 };
         if (found.has(way)) found.get(way).push(crossing);

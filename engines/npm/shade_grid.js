@@ -49,7 +49,9 @@ export function shadeFrame({ low, high, cloud_size }, light, wind) {
 /**
  * A cloud of a grid: the shadow of its mesh, in a space that is made larger, turned about y and moved to the world; its light is turned
  * with it. `power`: of what it lets through.
- * @typedef {{ shadow: import('./swept_shadow.js').SweptShadow, at: Vec3, scale: number, cosine: number, sine: number, power: number }} ShadeCloud
+ * @typedef {object} ShadeCloud
+ * @property {import('./swept_shadow.js').SweptShadow} shadow
+ * @property {Vec3} at @property {number} scale @property {number} cosine @property {number} sine @property {number} power
  */
 
 // A point of the world in the space of a cloud's shadow, and back.
@@ -184,7 +186,8 @@ export class ShadeGrid {
    */
   packed(blocks) {
     const order = blocks.map((_, i) => i).sort((a, b) => blocks[b].count[1] - blocks[a].count[1] || a - b);
-    const area = blocks.reduce((sum, { count }) => sum + count[0] * count[1], 0), depth = Math.max(1, ...blocks.map(({ count }) => count[2]));
+    const area = blocks.reduce((sum, { count }) => sum + count[0] * count[1], 0);
+    const depth = Math.max(1, ...blocks.map(({ count }) => count[2]));
     const width = Math.max(16, ...blocks.map(({ count }) => count[0]), Math.ceil(Math.sqrt(area * 1.2)));
     const corners = [];
     let x = 0, y = 0, row = 0;

@@ -106,8 +106,9 @@ export class SweptShadow {
         const u = zero[0] + i * one[0] + j * other[0] - left + 0.5, v = zero[1] + i * one[1] + j * other[1] - bottom + 0.5;
         if (u + a < 0 || v + b < 0 || u - a > width || v - b > height) continue;
         const x = Math.max(0, u - a), y = Math.max(0, v - b), right = Math.min(width, u + a), top = Math.min(height, v + b);
-        const x0 = Math.min(Math.floor(x), width - 1), y0 = Math.min(Math.floor(y), height - 1), x1 = Math.min(Math.floor(right), width - 1);
-        const y1 = Math.min(Math.floor(top), height - 1), p0 = x - x0, q0 = y - y0, p1 = right - x1, q1 = top - y1;
+        const x0 = Math.min(Math.floor(x), width - 1), y0 = Math.min(Math.floor(y), height - 1);
+        const x1 = Math.min(Math.floor(right), width - 1), y1 = Math.min(Math.floor(top), height - 1);
+        const p0 = x - x0, q0 = y - y0, p1 = right - x1, q1 = top - y1;
         const low = y0 * stride, high = y1 * stride;
         let n = low + x0;
         let sum = (1 - q0) * ((1 - p0) * sums[n] + p0 * sums[n + 1]) + q0 * ((1 - p0) * sums[n + stride] + p0 * sums[n + stride + 1]);
@@ -125,7 +126,8 @@ export class SweptShadow {
   corners() {
     if (this.known_corners) return this.known_corners;
     const { to_own: m, origin, cell_size, cells } = this, [a, b, c, d, e, f, g, h, i] = m;
-    const minors = [e * i - f * h, h * c - i * b, b * f - c * e, g * f - d * i, a * i - g * c, d * c - a * f, d * h - g * e, g * b - a * h, a * e - d * b];
+    const minors = [e * i - f * h, h * c - i * b, b * f - c * e, g * f - d * i, a * i - g * c,
+      d * c - a * f, d * h - g * e, g * b - a * h, a * e - d * b];
     const determinant = a * minors[0] + d * minors[1] + g * minors[2];
     this.known_corners = Array.from({ length: 8 }, (_, corner) => {
       const own = [0, 1, 2].map(axis => origin[axis] + cell_size * (corner >> axis & 1 ? cells[axis] - 0.5 : -0.5) - m[9 + axis]);

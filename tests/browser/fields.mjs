@@ -13,7 +13,8 @@ const HEAD = '[picture]\nwidth = 320\nheight = 180\n[camera]\nposition = [0, 3, 
 const FIELD = `[[cloud]]\nfiles = ["a.glb", "b.glb"]\nweights = [2, 1]\nlevels = true\nrotation = [0, 30, 10]\nscale = [3, 2.5, 3]
 [cloud.scatter]\nlow = [-60, 12, -60]\nhigh = [60, 18, 60]\ncount = 40\nsize = [0.7, 1.3]\ndrift = [2, 0, 1]\nhorizon_scale = 0.6
 horizon_lower = 9\nminimum_distance = 4\n`;
-const SHADED = HEAD.replace('shadows = false', 'cloud_shade = "grid"') + FIELD.replace('count = 40', 'count = 90').replace(/minimum.*\n/, '');
+const SHADED = HEAD.replace('shadows = false', 'cloud_shade = "grid"') +
+  FIELD.replace('count = 40', 'count = 90').replace(/minimum.*\n/, '');
 const CASES = {
   field: HEAD + FIELD,
   'a field in one fog': HEAD.replace('[chain]', 'extinction = 0.4\nhalf_lambert_sky = 0.5\n[chain]') + FIELD,

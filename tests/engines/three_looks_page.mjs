@@ -103,7 +103,8 @@ export async function shadowAt({ picture, cloud, strength, places, sun }) {
 export async function shadeOf({ file, places, sun }) {
   const gltf = await loaderOf().loadAsync(file), black = new Color(0, 0, 0), size = [64, 64], found = [], geometry = meshOf(gltf).geometry;
   const material = gltf.userData.cloudMaterial, target = new WebGLRenderTarget(...size, { type: FloatType });
-  material.setValues({ sunDirection: new Vector3(...sun), sunColor: new Color(1, 1, 1), ambientSky: black, ambientGround: black, tone: 'renderer',
+  material.setValues({ sunDirection: new Vector3(...sun), sunColor: new Color(1, 1, 1), ambientSky: black, ambientGround: black,
+    tone: 'renderer',
     phase: { share: 0 }, fog: false });
   for (const kind of ['none', 'meshes', 'instances']) {
     const scene = new Scene(), renderer = rendererOf(size), rows = new Float32Array(4 * size[0] * size[1]);

@@ -44,7 +44,10 @@ export class LayerShadows {
     this.grid = { has_shade: true, shade_x, shade_y, shade_z };
   }
 
-  get values() { return { shadow_sums: 'shadow sums', shadow_frames: 'shadow frames', shadow_count: this.count, shade_shares: 'shade shares', ...this.grid }; }
+  get values() {
+    const textures = { shadow_sums: 'shadow sums', shadow_frames: 'shadow frames', shade_shares: 'shade shares' };
+    return { ...textures, shadow_count: this.count, ...this.grid };
+  }
 
   // The passes of all things that cast a shadow: [kind, index, program, values].
   *passes() {

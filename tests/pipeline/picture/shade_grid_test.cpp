@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -165,7 +164,7 @@ TEST(ShadeGrid, FieldsAreWithinTheirBoundOfExactChords) {
     meshes.push_back(
         casting(bakedMesh(sourceOf(sourceKindOf(name), name), options({"vertices=1500", "rays=64", "bake-voxels=24"}, kGrow), report)));
   }
-  std::printf("clouds | sun | mean T | none | each, s | grid, s, MB | picture: none, each, grid of 255\n");
+  std::printf("clouds | sun | mean T | none | each | grid, MB | picture: none, each, grid of 255\n");
   for (const int count : {50, 200, 1000}) {
     Scenery scenery;
     DrawnField& field = scenery.fields.emplace_back();
@@ -186,15 +185,11 @@ TEST(ShadeGrid, FieldsAreWithinTheirBoundOfExactChords) {
       const std::vector<Instance> instances = withLevels(instancesAt(scenery, 0), camera);
       const ExactShade exact(instances, meshes, to_sun);
       const SceneFile scene = shadedScene(to_sun, CloudShade::kEach);
-      const auto timed = [&](CloudShade shade, double& seconds) {
+      const auto sharesBy = [&](CloudShade shade) {
         const SceneFile own = shadedScene(to_sun, shade);
-        const auto begin = std::chrono::steady_clock::now();
-        auto shares = SceneShadows(own, instances).sharesOfVertices();
-        seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        return shares;
+        return SceneShadows(own, instances).sharesOfVertices();
       };
-      double each_seconds = 0, grid_seconds = 0;
-      const auto each = timed(CloudShade::kEach, each_seconds), grid = timed(CloudShade::kGrid, grid_seconds);
+      const auto each = sharesBy(CloudShade::kEach), grid = sharesBy(CloudShade::kGrid);
       std::vector<std::vector<float>> truth(instances.size());
       parallelFor(instances.size(), [&](size_t i) {
         if (!instances[i].is_seen) return;
@@ -224,9 +219,9 @@ TEST(ShadeGrid, FieldsAreWithinTheirBoundOfExactChords) {
       const auto rms = [&](int i) { return std::sqrt(squares[size_t(i)] / double(n)); };
       const auto shade = shadeOf(instances, scene.light, scene.shadows, to_sun);
       const auto& nodes = shade->grid.frame().nodes;
-      std::printf("%zu | %g | %.3f | %.4f | %.4f, %.3f | %.4f, %.3f, %.1f (%d %d %d) | %.2f, %.2f, %.2f\n", instances.size(),
-                  double(elevation), sum / double(n), rms(0), rms(1), each_seconds, rms(2), grid_seconds,
-                  double(nodes[0]) * nodes[1] * nodes[2] * 2e-6, nodes[0], nodes[1], nodes[2], off(nullptr), off(&each), off(&grid));
+      std::printf("%zu | %g | %.3f | %.4f | %.4f | %.4f, %.1f (%d %d %d) | %.2f, %.2f, %.2f\n", instances.size(), double(elevation),
+                  sum / double(n), rms(0), rms(1), rms(2), double(nodes[0]) * nodes[1] * nodes[2] * 2e-6, nodes[0], nodes[1], nodes[2],
+                  off(nullptr), off(&each), off(&grid));
       // The ground below, at one place in 100 square units at most.
       const ShadeBlock& all = shade->grid.pastAll();
       constexpr int kSide = 48;
