@@ -186,7 +186,7 @@ struct BakedMesh {
   AssetInfo info;
   std::vector<float>
       harmonics;  ///< #V × (info.harmonic_order + 1)² coefficients of T at info.extinction (core/harmonics.h) in scene axes, or empty
-  std::vector<Vec3> colors{};  ///< #V base colours of the sculpt, linear, 0 … 1; empty: white, or not read
+  std::vector<Vec3> colors{};                  ///< #V base colours of the sculpt, linear, 0 … 1; empty: white, or not read
   std::shared_ptr<const Impostor> impostor{};  ///< is drawn in place of the triangles, which are then the cloud's box without lobes
 };
 

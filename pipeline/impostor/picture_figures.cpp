@@ -9,6 +9,7 @@
 #include "bake/impostor/bake_impostor.h"
 #include "bake/lobe/sweep.h"
 #include "core/parallel.h"
+#include "core/portable_math.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "pipeline/fields/fields.h"
@@ -28,7 +29,7 @@ constexpr float kFieldOfView = 3;
 
 // A camera so far away that the ball covers the picture.
 Camera cameraFrom(const ImpostorInfo& info, Vec3 to_eye, int pixels) {
-  const float distance = info.radius / std::tan(kFieldOfView * float(kPi / 360));
+  const float distance = info.radius / float(tanDegrees(kFieldOfView / 2));
   Camera camera{info.center + to_eye * distance, info.center, kFieldOfView};
   camera.width = camera.height = pixels;
   return camera;
@@ -154,7 +155,8 @@ std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImp
   for (int s = 0; s < kSuns; ++s) {
     const std::vector<Vec3> axes = sweepAxes(2 * kSuns);
     const Vec3 to_sun = axes[size_t(s)].y < 0 ? -axes[size_t(s)] : axes[size_t(s)];
-    LightSettings light = lightForSun(std::atan2(to_sun.x, to_sun.z) * float(180 / kPi), std::asin(to_sun.y) * float(180 / kPi));
+    LightSettings light = lightForSun(float(atan2Degrees(to_sun.x, to_sun.z)),
+                                      float(atan2Degrees(to_sun.y, std::sqrt(to_sun.x * to_sun.x + to_sun.z * to_sun.z))));
     light.samples_per_side = 1;
     light.half_lambert = 1;
     light.view_extinction = 0;
