@@ -24,7 +24,7 @@ struct GltfSettings {
   std::optional<int> uv_set;  ///< first of the two sets, 0 … 6; unset = the lowest n with n and n+1 free in every primitive
   bool attribute = false;     ///< also write _OCCLUSION (VEC4: o.x, o.y, o.z, d)
   KeepAliveTexture keep_alive_texture = KeepAliveTexture::kAuto;
-  std::optional<int> pack{};  ///< bytes of a lobe: 8; unset: four floats
+  bool pack = false;  ///< lobes of 8 bytes; else of 16, four floats
   PackForm pack_form = PackForm::kList;
 };
 

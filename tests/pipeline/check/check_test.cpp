@@ -247,7 +247,7 @@ TEST(Check, NoOptionOfABakeLooksLikeDamage) {
   const SurfaceMesh bar = boxMesh({0, 0, 0}, {3, 1, 0.8F});
   const std::set<std::string> harmless{"sound", "rough", "too-coarse", "bound"};
   // What an option may need.
-  const std::vector<Options> companions{{}, {{"method", "rays"}}};
+  const std::vector<Options> companions{{}, {{"method", "rays"}}, {{"pack", "8"}}};
   const std::set<std::string_view> in_voxels{"voxels", "bake-voxels"};  // the samples are 2, which no fit can be made in
   const auto bakedWith = [&](const Option& option) {
     for (Options given : companions) {

@@ -227,8 +227,8 @@ TEST(Options, RangesAreHeldAtBothEnds) {
 
 // `view --watch` bakes: with everything that changes the lobes, and nothing that only writes.
 TEST(Options, AWatchTakesTheOptionsOfItsBake) {
-  const std::set<std::string> left_out{"scene",  "lattice",   "lattice-cells",      "lods", "inspect",
-                                       "uv-set", "attribute", "keep-alive-texture", "force"},
+  const std::set<std::string> left_out{"scene", "lattice", "lattice-cells", "lods", "inspect", "uv-set", "attribute", "keep-alive-texture",
+                                       "force", "pack",    "pack-as"},
       of_any_run{"threads", "memory", "strict", "json"};
   for (const Option& option : optionTable()) {
     const bool of_bake = (option.commands & kBake) != 0;

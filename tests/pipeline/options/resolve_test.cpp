@@ -113,6 +113,8 @@ const Texts kRays{"method=rays"};
 
 const std::vector<RuleCase>& ruleCases() {
   static const std::vector<RuleCase> cases{
+      {"pack", 0, ": --attribute writes the lobes a second time", {"pack=8", "attribute"}, {{"pack=8"}, {"pack=16", "attribute"}}},
+      {"pack-as", 0, " needs --pack 8", {"pack-as=strip"}, {{"pack=8", "pack-as=strip"}}},
       {"method",
        0,
        " rays cannot be combined with --target-error",

@@ -206,7 +206,8 @@ TEST(LitMesh, FrameHoldsAllInstances) {
   Affine far;
   far.offset = {10, 0, 0};
   const Instance instances[] = {{&ball, {}}, {&ball, far}};
-  const LitMesh lit = lightMeshes(instances, lightForSun(0, 30));
+  LitMesh lit = lightMeshes(instances, lightForSun(0, 30));
+  prepareForRays(lit);
   EXPECT_NEAR(lit.size, 12, 0.01);
   EXPECT_NEAR(lit.center.x, 5, 0.01);
   EXPECT_EQ(lit.triangles.size(), 2 * ball.surface.triangles.size());
@@ -281,7 +282,8 @@ TEST(LitMesh, ColorsAreInterpolatedAtCrossings) {
   for (const Vec3& p : ball.surface.positions) ball.colors.push_back(Vec3{0.5F, 0.5F, 0.5F} + p * 0.4F);
   const Instance instances[] = {{&ball, {}}};
   LightSettings light = lightForSun(100, 25);
-  const LitMesh lit = lightMeshes(instances, light);
+  LitMesh lit = lightMeshes(instances, light);
+  prepareForRays(lit);
   const Ray ray{{0.1F, 0.2F, 3}, {0, 0, -1}};
   const auto crossing = nearestCrossing(lit, ray);
   ASSERT_TRUE(crossing);
