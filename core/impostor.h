@@ -51,6 +51,8 @@ struct Impostor {
   std::vector<Image> rest;  ///< lit; opacity; depth, 0 nearest to the eye and 1 farthest from it in the ball
 };
 inline constexpr int kLeastFrame = 4;
+/// The most pixels to a side of an atlas: those of the largest picture that GPUs take.
+inline constexpr int kLargestAtlas = 16384;
 
 /// An atlas without mip levels, in which nothing is seen.
 Impostor blankImpostor(const ImpostorInfo& info);

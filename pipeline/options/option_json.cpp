@@ -27,6 +27,14 @@ Json wordsOf(const ValueForm& form) {
   return words;
 }
 
+// The words of a choice, and without quotes those that are numbers.
+Json choicesOf(const ValueForm& form) {
+  Json choices = wordsOf(form);
+  for (const Json& word : wordsOf(form))
+    if (Json number = Json::parse(word.get<std::string>(), nullptr, false); number.is_number()) choices.push_back(std::move(number));
+  return choices;
+}
+
 bool takesPercent(const ValueForm& form) { return form.high_percent > 0; }
 // Whether the words are parts of the shape, and no values themselves.
 bool hasWordsInShape(const ValueForm& form) { return form.shape[0] == 'W'; }
@@ -79,7 +87,7 @@ Json valueSchema(const ValueForm& form, bool is_option) {
   Json all = Json::array();
   switch (form.kind) {
     case ValueForm::kFlag: return {{"type", "boolean"}};
-    case ValueForm::kChoice: return {{"enum", wordsOf(form)}};
+    case ValueForm::kChoice: return {{"enum", choicesOf(form)}};
     case ValueForm::kText:
       if (!*form.shape) return {{"type", "string"}};
       break;

@@ -16,7 +16,6 @@ namespace cloudbake {
 namespace {
 
 constexpr int kVersion = 1;
-constexpr int kLargestAtlas = 16384;  // pixels to a side: the largest picture that GPUs take
 
 Json numbersOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 Vec3 vectorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }

@@ -114,6 +114,7 @@ const Texts kRays{"method=rays"};
 const std::vector<RuleCase>& ruleCases() {
   static const std::vector<RuleCase> cases{
       {"pack", 0, ": --attribute writes the lobes a second time", {"pack=8", "attribute"}, {{"pack=8"}, {"pack=16", "attribute"}}},
+      {"frame", 0, " times --views is more than 16384", {"frame=1024", "views=17"}, {{"frame=1024", "views=16"}}, kImpostor},
       {"pack-as", 0, " needs --pack 8", {"pack-as=strip"}, {{"pack=8", "pack-as=strip"}}},
       {"method",
        0,
