@@ -103,6 +103,7 @@ class Packer {
   std::string packed() {
     const bool moves = countDeformed() > 0;
     separate();
+    uses_ = useCounts();
     if (!moves) chooseGrids();
     info_.density_max = std::ldexp(largestDensity(), 2 * spare_bits_);
     for (const auto& [mesh, owner] : owners_) packMesh(mesh);
@@ -433,7 +434,7 @@ class Packer {
   }
 
   // How often attributes, targets and indices use each accessor.
-  std::map<int, int> useCounts() {
+  std::map<int, int> useCounts() const {
     std::map<int, int> counts;
     for (const Json& mesh : json_["meshes"])
       for (const Json& primitive : mesh["primitives"]) {
@@ -450,10 +451,9 @@ class Packer {
     Json& primitive = primitives(mesh)[p];
     if (!isList(primitive) || !hasLobes(primitive["attributes"]) || primitive.contains("targets") || primitive.contains("extensions"))
       return;
-    std::map<int, int> counts = useCounts();
-    if (counts[int(wholeNumber(primitive["indices"]))] > 1) return;
+    if (uses_[int(wholeNumber(primitive["indices"]))] > 1) return;
     for (const Json& accessor : primitive["attributes"])
-      if (counts[int(wholeNumber(accessor))] > 1 || json_["accessors"][size_t(wholeNumber(accessor))].contains("sparse")) return;
+      if (uses_[int(wholeNumber(accessor))] > 1 || json_["accessors"][size_t(wholeNumber(accessor))].contains("sparse")) return;
     const size_t vertices = verticesOf(primitive);
     for (const Json& accessor : primitive["attributes"])
       if (json_["accessors"][size_t(wholeNumber(accessor))].value("count", size_t(0)) != vertices) return;
@@ -731,6 +731,7 @@ class Packer {
   LoadedGltf loaded_;
   Json json_;
   std::vector<View> views_;
+  std::map<int, int> uses_;       // accessor → how often the file uses it before anything is packed
   std::map<int, size_t> owners_;  // mesh → its first part
   std::map<int, int> copies_;     // mesh → the copy that other nodes have
   std::map<int, Grid> grids_;     // per mesh
