@@ -15,7 +15,8 @@ ExitCode runImpostor(const CommandLine& line) {
   BakeReport report;
   report.command = "impostor";
   Stopwatch watch;
-  const BakedImpostor baked = bakeImpostor(settings, report, watch);
+  const ImpostorSubject subject = readImpostorSubject(settings, report, watch);
+  const BakedImpostor baked = bakeImpostor(subject, settings, report, watch);
   enforceStrict(settings.run.strict, report);
   const ImpostorFiles files = encodeImpostor(baked.impostor, billboardOf(baked.impostor));
   const std::filesystem::path folder = settings.output.file;
@@ -41,7 +42,7 @@ ExitCode runImpostor(const CommandLine& line) {
   std::string text = impostorText(baked);
   Json json = impostorJson(baked);
   if (settings.impostor.measure) {
-    const std::vector<SizeFigures> figures = pictureFigures(settings, baked, report);
+    const std::vector<SizeFigures> figures = pictureFigures(subject, settings, baked, report);
     watch.lap(report.seconds, "measure");
     text += pictureFiguresText(figures);
     json["pictures"] = pictureFiguresJson(figures);

@@ -21,6 +21,9 @@ struct Image {
 /// A black picture.
 inline Image blankImage(int width, int height) { return {width, height, std::vector<Vec3>(size_t(width) * size_t(height))}; }
 
+/// Means of 2 × 2 pixels; a last column or row that has no neighbour is left out.
+Image halved(const Image& image);
+
 /// The four numbers of a pixel in Image4: R, G, B, A.
 using Rgba = std::array<float, 4>;
 

@@ -11,15 +11,6 @@ namespace {
 
 float signOf(float value) { return value < 0 ? -1.0F : 1.0F; }
 
-Image halved(const Image& image) {
-  Image half = blankImage(image.width / 2, image.height / 2);
-  for (int y = 0; y < half.height; ++y)
-    for (int x = 0; x < half.width; ++x)
-      half.at(x, y) =
-          (image.at(2 * x, 2 * y) + image.at(2 * x + 1, 2 * y) + image.at(2 * x, 2 * y + 1) + image.at(2 * x + 1, 2 * y + 1)) / 4;
-  return half;
-}
-
 }  // namespace
 
 float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction) {
@@ -97,7 +88,8 @@ FrameAxes frameAxes(Vec3 to_eye) {
 }
 
 Vec2 encodedDirection(Vec3 direction, const FrameAxes& axes) {
-  const Vec2 at = octahedral({dot(axes.right, direction), dot(axes.up, direction), -dot(axes.to_eye, direction)});
+  const Vec3 own = inView(axes, direction);
+  const Vec2 at = octahedral({own.x, own.y, -own.z});
   return {at.x * 0.5F + 0.5F, at.y * 0.5F + 0.5F};
 }
 

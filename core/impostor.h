@@ -79,6 +79,10 @@ struct FrameAxes {
   Vec3 right, up, to_eye;
 };
 FrameAxes frameAxes(Vec3 to_eye);
+/// A direction in these axes.
+inline Vec3 inView(const FrameAxes& axes, Vec3 direction) {
+  return {dot(axes.right, direction), dot(axes.up, direction), dot(axes.to_eye, direction)};
+}
 
 /// A direction o as two values of 0 … 1, and back. The middle of the map is the direction away from the eye, so that its folds, over which
 /// filters cannot mix, are at directions to the eye, which o seldom has.

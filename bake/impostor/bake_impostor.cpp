@@ -12,8 +12,6 @@
 #include "core/lobe_lighting.h"
 #include "core/parallel.h"
 #include "core/portable_math.h"
-#include "core/ray_scene.h"
-#include "core/surface_points.h"
 #include "core/vertex_normals.h"
 
 namespace cloudbake {
@@ -131,25 +129,22 @@ class FieldMarch {
   float per_step_;
 };
 
-// S(σℓ) with the phase of each octave.
-struct ScatteredTerms {
-  std::array<float, kMostLightOctaves + 1> weights{}, extinctions{};
-  int count = 1;
-  ScatteredTerms(const VolumeLight& light, float extinction, float cosine) : count(light.octaves.count + 1) {
-    float weight = 1, sum = 0, asymmetry = light.asymmetry;
-    for (size_t i = 0; i < size_t(count); ++i) {
-      weights[i] = weight * (asymmetry == 0 ? 1 : phaseOf(asymmetry, cosine));
-      extinctions[i] = extinction;
-      sum += weight;
-      weight *= light.octaves.contribution, extinction *= light.octaves.extinction, asymmetry *= light.octaves.eccentricity;
-    }
-    for (float& w : weights) w /= sum;
+// p(cⁱ g) S of the octaves: what a view sees of a light that passes lengths of cloud to the place and is scattered there.
+class ScatteredLight {
+ public:
+  ScatteredLight(const LightTerms& terms, const VolumeLight& light, float cosine) : terms_(terms), weights_(terms.octave_weights) {
+    float asymmetry = light.asymmetry;
+    for (float& weight : weights_) weight *= phaseOf(asymmetry, cosine), asymmetry *= light.octaves.eccentricity;
   }
   float at(float length) const {
     float sum = 0;
-    for (size_t i = 0; i < size_t(count); ++i) sum += weights[i] * portableExp(-extinctions[i] * length);
+    for (size_t i = 0; i < weights_.size(); ++i) sum += weights_[i] * portableExp(-terms_.exponentials[terms_.used[i]].exponent * length);
     return sum;
   }
+
+ private:
+  const LightTerms& terms_;
+  std::vector<float> weights_;
 };
 
 }  // namespace
@@ -183,6 +178,7 @@ SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const Vo
   std::vector<Vec3> places;
   std::vector<float> weights;
   for (const RowOfTexels& row : rows) append(places, row.places), append(weights, row.weights);
+  const LightTerms terms = lightTerms({&info.extinction, 1}, volume.light.octaves);
   const size_t lights = 2 * axes.size();
   seen.light.resize(seen.texels.size() * lights);
   sweepLengths(places, axes, volume.field, volume.ray_length, [&](size_t first_axis, std::span<const float> lengths) {
@@ -190,12 +186,12 @@ SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const Vo
       const size_t light = 2 * first_axis + row;
       const Vec3 direction = light % 2 == 0 ? axes[light / 2] : -axes[light / 2];
       const auto own = lengths.subspan(row * places.size(), places.size());
-      std::optional<ScatteredTerms> terms;
+      std::optional<ScatteredLight> scattered;
       for (size_t t = 0; t < seen.texels.size(); ++t) {
-        if (!terms || volume.light.asymmetry != 0)
-          terms.emplace(volume.light, info.extinction, -dot(axesOfTexel(info, seen.texels[t]).to_eye, direction));
+        if (!scattered || volume.light.asymmetry != 0)
+          scattered.emplace(terms, volume.light, -dot(axesOfTexel(info, seen.texels[t]).to_eye, direction));
         float sum = 0;
-        for (size_t p = t * per_texel; p < (t + 1) * per_texel; ++p) sum += weights[p] * terms->at(own[p]);
+        for (size_t p = t * per_texel; p < (t + 1) * per_texel; ++p) sum += weights[p] * scattered->at(own[p]);
         seen.light[t * lights + light] = sum;
       }
     }
@@ -203,50 +199,67 @@ SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const Vo
   return seen;
 }
 
+namespace {
+
+std::vector<Vec3> normalsOf(const SurfaceMesh& surface) {
+  return surface.normals.empty() ? vertexNormals(surface.positions, surface.triangles) : surface.normals;
+}
+
+std::vector<Vec3> inBall(const ImpostorInfo& info, std::span<const Vec3> positions) {
+  std::vector<Vec3> places;
+  for (const Vec3& p : positions) places.push_back((p - info.center) / info.radius);
+  return places;
+}
+
+}  // namespace
+
+MeshFrames::MeshFrames(const BakedMesh& mesh, float half_lambert, const ImpostorInfo& info)
+    : mesh_(mesh),
+      half_lambert_(half_lambert),
+      normals_(normalsOf(mesh.surface)),
+      places_(inBall(info, mesh.surface.positions)),
+      scene_(places_, mesh.surface.triangles) {}
+
+std::optional<MeshFrames::Hit> MeshFrames::nearest(const Ray& ray) const {
+  std::optional<Hit> nearest;
+  scene_.forHits(ray, [&](const RayHit& hit) {
+    const Triangle& t = mesh_.surface.triangles[hit.triangle];
+    const Vec3 a = places_[t[0]], e = places_[t[1]] - a, f = places_[t[2]] - a, s = ray.origin - a;
+    const Vec3 p = cross(ray.direction, f), q = cross(s, e);
+    const float determinant = dot(e, p);
+    if (determinant == 0) return;
+    const float u = std::clamp(dot(s, p) / determinant, 0.0F, 1.0F), v = std::clamp(dot(ray.direction, q) / determinant, 0.0F, 1 - u);
+    const float distance = dot(f, q) / determinant;
+    if (!nearest || distance < nearest->distance) nearest = Hit{{t, {1 - u - v, u, v}}, distance};
+  });
+  return nearest;
+}
+
 SeenTexels seenOfMesh(const ImpostorInfo& info, int first, int count, const MeshFrames& frames, std::span<const Vec3> axes) {
   constexpr int kRays = kRaysPerSide * kRaysPerSide;
-  const SurfaceMesh& surface = frames.mesh.surface;
+  constexpr float kBefore = 0.01F;  // rays begin so many radii before the ball, in front of what touches it
+  const BakedMesh& mesh = frames.mesh();
   const std::vector<Vec3> lights = bothSenses(axes);
-  const std::vector<Vec3> own = surface.normals.empty() ? vertexNormals(surface.positions, surface.triangles) : std::vector<Vec3>();
-  const std::vector<Vec3>& normals = surface.normals.empty() ? own : surface.normals;
-  std::vector<Vec3> places;  // in the ball's frame, for rays in floats
-  for (const Vec3& p : surface.positions) places.push_back((p - info.center) / info.radius);
-  const RayScene scene(places, surface.triangles);
-  const auto rows = rowsOf(info, first, count, [&](RowOfTexels& row, uint32_t texel, const AtlasFrame& frame, int x, int y) {
+  return joined(rowsOf(info, first, count, [&](RowOfTexels& row, uint32_t texel, const AtlasFrame& frame, int x, int y) {
     std::vector<float> light(lights.size());
     float hits = 0, depth = 0;
     for (int r = 0; r < kRays; ++r) {
       const Ray ray = rayOf(info, frame, x, y, r);
-      const Ray local{(ray.origin - info.center) / info.radius + frame.axes.to_eye * 0.01F, ray.direction};
-      std::optional<SurfacePoint> nearest;
-      float distance = INFINITY;
-      scene.forHits(local, [&](const RayHit& hit) {
-        const Triangle& t = surface.triangles[hit.triangle];
-        const Vec3 a = places[t[0]], e = places[t[1]] - a, f = places[t[2]] - a, s = local.origin - a, d = local.direction;
-        const Vec3 p = cross(d, f), q = cross(s, e);
-        const float determinant = dot(e, p);
-        if (determinant == 0) return;
-        const float u = std::clamp(dot(s, p) / determinant, 0.0F, 1.0F), v = std::clamp(dot(d, q) / determinant, 0.0F, 1 - u);
-        const float away = dot(f, q) / determinant;
-        if (!(away < distance)) return;
-        distance = away;
-        nearest = SurfacePoint{t, {1 - u - v, u, v}};
-      });
-      if (!nearest) continue;
+      const auto hit = frames.nearest({(ray.origin - info.center) / info.radius + frame.axes.to_eye * kBefore, ray.direction});
+      if (!hit) continue;
       ++hits;
-      depth += distance - 0.01F;
-      const Vec3 normal = normalAt(*nearest, normals);
+      depth += hit->distance - kBefore;
+      const Vec3 normal = normalAt(hit->place, frames.normals());
       for (size_t l = 0; l < lights.size(); ++l)
-        light[l] += blendedTransmittance(*nearest, frames.mesh.lobes, lights[l], frames.mesh.info.shape, info.extinction) *
-                    surfaceFactor(normal, lights[l], frames.half_lambert);
+        light[l] += blendedTransmittance(hit->place, mesh.lobes, lights[l], mesh.info.shape, info.extinction) *
+                    surfaceFactor(normal, lights[l], frames.halfLambert());
     }
     if (hits == 0) return;
     for (const float l : light) row.seen.light.push_back(l / hits);
     row.seen.texels.push_back(texel);
     row.seen.opacity.push_back(hits / kRays);
     row.seen.depth.push_back(depth / hits / 2);
-  });
-  return joined(rows);
+  }));
 }
 
 std::pair<Vec3, float> ballAround(std::span<const Vec3> points) {
@@ -447,10 +460,6 @@ std::array<float, kSix> sixWeights(Vec3 light) {
   const std::array<float, 3> axes{light.x, light.y, light.z};
   for (size_t i = 0; i < 3; ++i) weights[axes[i] < 0 ? i + 3 : i] = axes[i] * axes[i];
   return weights;
-}
-
-Vec3 inView(const FrameAxes& axes, Vec3 direction) {
-  return {dot(axes.right, direction), dot(axes.up, direction), dot(axes.to_eye, direction)};
 }
 
 // Solves the normal equations a x = b by Cholesky's decomposition; a is symmetric, and a small ridge keeps it positive.

@@ -4,11 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bake/lobe/sliced_field.h"
 #include "core/impostor.h"
+#include "core/ray_scene.h"
+#include "core/surface_points.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -36,9 +40,27 @@ struct VolumeFrames {
 /// The volume in frames first … first + count − 1, counted row by row. The result is the same for any number of threads.
 SeenTexels seenOfVolume(const ImpostorInfo& info, int first, int count, const VolumeFrames& volume, std::span<const Vec3> axes);
 
-struct MeshFrames {
-  const BakedMesh& mesh;
-  float half_lambert = 1;  ///< f of the factor lerp(f, 1, n·l/2 + ½) of all lights; 1: none
+/// A mesh, prepared for the rays of all frames. It refers to the mesh.
+class MeshFrames {
+ public:
+  /// `half_lambert`: f of the factor lerp(f, 1, n·l/2 + ½) of all lights; 1: none. Of `info` only the ball counts.
+  MeshFrames(const BakedMesh& mesh, float half_lambert, const ImpostorInfo& info);
+  const BakedMesh& mesh() const { return mesh_; }
+  float halfLambert() const { return half_lambert_; }
+  std::span<const Vec3> normals() const { return normals_; }
+
+  /// What a ray from the eye meets first; distances are in radii, as are the ray's own numbers, from the center of the ball.
+  struct Hit {
+    SurfacePoint place;
+    float distance = 0;
+  };
+  std::optional<Hit> nearest(const Ray& ray) const;
+
+ private:
+  const BakedMesh& mesh_;
+  float half_lambert_;
+  std::vector<Vec3> normals_, places_;  // places: from the center, in radii, for rays in floats
+  RayScene scene_;
 };
 /// The mesh, opaque.
 SeenTexels seenOfMesh(const ImpostorInfo& info, int first, int count, const MeshFrames& mesh, std::span<const Vec3> axes);

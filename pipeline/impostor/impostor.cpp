@@ -26,7 +26,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kDirections = 30, kJudgingDirections = 64, kJudgingNodes = 4;  // of light, beside the zenith
+constexpr int kDirections = 30, kJudgingDirections = 64;  // of light, beside the zenith
+constexpr int kNodes = 2, kJudgingNodes = 4;
 constexpr int kJudgedFrames = 8;
 constexpr size_t kShapeTexels = 512;   // for the search of k and b
 constexpr size_t kMostTexels = 40000;  // that are fitted together, so that their light does not fill the memory
@@ -52,6 +53,13 @@ void storeSixWay(const SeenTexels& seen, std::span<const float> maps, SixWayMaps
   }
 }
 
+// A frame that is looked at more closely.
+struct Sample {
+  int frame = 0;
+  SeenTexels seen;
+  std::vector<TexelLobe> lobes;
+};
+
 // Frames from all sides.
 std::vector<int> someFrames(const ImpostorInfo& info, int count) {
   const int all = info.views * info.views;
@@ -62,22 +70,24 @@ std::vector<int> someFrames(const ImpostorInfo& info, int count) {
 
 }  // namespace
 
-BakedImpostor bakeImpostor(const Settings& settings, BakeReport& report, Stopwatch& watch) {
+ImpostorSubject readImpostorSubject(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   const std::filesystem::path& file = settings.source.input;
   report.input = file.string();
   const std::string bytes = readFileBytes(file);
-  if (isImpostor(bytes)) throw InputError(file.string(), "is an impostor already: give the baked asset that it was made of");
   Warnings told_by_sculpt;
-  const BakedMesh mesh = decodeGlb(file, bytes, told_by_sculpt, settings.source.read);
-  const Cloud cloud = readSculpt(settings, report, watch);
-  if (!cloud.solid() && settings.impostor.of == ImpostorOf::kVolume)
-    throw InputError(file.string(),
-                     "the mesh encloses nothing, so that there is no volume to see: close it (bake --close wrap), or use --of mesh");
-  report.vertices = cloud.surface.positions.size();
-  report.triangles = cloud.surface.triangles.size();
-  report.info = mesh.info;
+  ImpostorSubject subject{decodeGlb(file, bytes, told_by_sculpt, settings.source.read), {}, hashBytes(bytes)};
+  subject.cloud = readSculpt(settings, report, watch);
+  report.vertices = subject.cloud.surface.positions.size();
+  report.triangles = subject.cloud.surface.triangles.size();
+  report.info = subject.mesh.info;
+  return subject;
+}
 
-  const BakeParameters parameters = parametersFor(cloud, settings);
+BakedImpostor bakeImpostor(const ImpostorSubject& subject, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  const auto& [mesh, cloud, hash] = subject;
+  const std::string file = settings.source.input.string();
+  if (!cloud.solid() && settings.impostor.of == ImpostorOf::kVolume)
+    throw InputError(file, "the mesh encloses nothing, so that there is no volume to see: close it (bake --close wrap), or use --of mesh");
   ImpostorInfo info;
   info.views = settings.impostor.views;
   info.frame = settings.impostor.frame;
@@ -85,42 +95,47 @@ BakedImpostor bakeImpostor(const Settings& settings, BakeReport& report, Stopwat
   info.extinction = worldExtinction({&mesh, {}}, {});
   info.box = boundingBox(cloud.surface);
   info.gains = info.of == ImpostorOf::kVolume || mesh.info.volume;
-  info.input_hash = hashBytes(bytes);
+  info.input_hash = hash;
   std::tie(info.center, info.radius) = ballAround(mesh.surface.positions);
   info.radius *= 1 + 3 / float(info.frame);  // the outermost texels stay empty, for filters
-  const LightSet set = fitLights(std::nullopt, true, kDirections), judging = fitLights(std::nullopt, true, kJudgingDirections);
-  const ImpostorLights lights{set.axes, set.weights}, judges{judging.axes, judging.weights};
   const size_t texels = size_t(info.views) * size_t(info.frame) * size_t(info.views) * size_t(info.frame);
   requireMemory({fmt::format("an atlas of {} × {} frames of {} pixels", info.views, info.views, info.frame),
                  double(texels) * (3.0 * sizeof(Vec3) + 16), "use fewer --views or a smaller --frame"},
                 settings.source.memory_limit);
 
   std::optional<IntegrationField> field;
-  std::function<SeenTexels(int, int, std::span<const Vec3>, int)> seenAt;
+  std::optional<MeshFrames> mesh_frames;
+  std::function<SeenTexels(int first, int count, std::span<const Vec3> axes, int nodes)> seenAt;
   if (info.of == ImpostorOf::kVolume) {
+    const BakeParameters parameters = parametersFor(cloud, settings);
     field = buildField(cloud, settings.field, Method::kSweep, report.warnings);
-    const VolumeLight light = settings.lobe.volume.over(mesh.info.volume.value_or(VolumeLight{}));
-    seenAt = [&, light](int first, int count, std::span<const Vec3> axes, int nodes) {
-      return seenOfVolume(info, first, count, {field->swept(), light, *parameters.bake.ray_length, nodes}, axes);
+    seenAt = [&info, &swept = field->swept(), light = settings.lobe.volume.over(mesh.info.volume.value_or(VolumeLight{})),
+              ray_length = *parameters.bake.ray_length](int first, int count, std::span<const Vec3> axes, int nodes) {
+      return seenOfVolume(info, first, count, {swept, light, ray_length, nodes}, axes);
     };
   } else {
-    seenAt = [&](int first, int count, std::span<const Vec3> axes, int) {
-      return seenOfMesh(info, first, count, {mesh, settings.impostor.half_lambert}, axes);
-    };
+    mesh_frames.emplace(mesh, settings.impostor.half_lambert, info);
+    seenAt = [&](int first, int count, std::span<const Vec3> axes, int) { return seenOfMesh(info, first, count, *mesh_frames, axes); };
   }
   watch.lap(report.seconds, "field");
 
-  constexpr int kNodes = 2;
-  std::vector<float> some;
+  // Some frames show k and how thick the cloud is.
+  const LightSet set = fitLights(std::nullopt, true, kDirections);
+  const ImpostorLights lights{set.axes, set.weights};
+  std::vector<Sample> samples;
+  std::vector<float> light;
   for (const int frame : someFrames(info, kJudgedFrames)) {
-    const SeenTexels seen = seenAt(frame, 1, set.axes, kNodes);
-    some.insert(some.end(), seen.light.begin(), seen.light.end());
+    samples.push_back({frame, seenAt(frame, 1, set.axes, kNodes), {}});
+    const std::vector<float>& own = samples.back().seen.light;
+    light.insert(light.end(), own.begin(), own.end());
   }
-  if (some.empty()) throw InputError(file.string(), "nothing of the cloud is seen: is it smaller than a texel?");
-  info.exponent = fitTexelExponent(some, lights, 2, info.extinction, kShapeTexels);
+  if (light.empty()) throw InputError(file, "nothing of the cloud is seen: is it smaller than a texel?");
+  info.exponent = fitTexelExponent(light, lights, 2, info.extinction, kShapeTexels);
   float thickest = 0;
-  for (const TexelLobe& texel : fitTexels(some, lights, info.exponent, info.extinction))
-    thickest = std::max(thickest, texel.lobe.thickness);
+  for (Sample& sample : samples) {
+    sample.lobes = fitTexels(sample.seen.light, lights, info.exponent, info.extinction);
+    for (const TexelLobe& texel : sample.lobes) thickest = std::max(thickest, texel.lobe.thickness);
+  }
   info.thickest = std::min(thickest, kThickest / info.extinction);
   watch.lap(report.seconds, "shape");
 
@@ -135,22 +150,19 @@ BakedImpostor bakeImpostor(const Settings& settings, BakeReport& report, Stopwat
   });
   watch.lap(report.seconds, "texels");
 
-  // Other lights than those of the fit, in frames from all sides.
-  TexelError fitted, stored, six_way;
+  // Other lights than those of the fit, in the same frames.
+  const LightSet judging = fitLights(std::nullopt, true, kJudgingDirections);
+  const ImpostorLights judges{judging.axes, judging.weights};
   const std::vector<Vec3> directions = bothSenses(judging.axes);
-  for (const int frame : someFrames(info, kJudgedFrames)) {
-    const SeenTexels seen = seenAt(frame, 1, set.axes, kNodes), judged = seenAt(frame, 1, judging.axes, kJudgingNodes);
-    const std::vector<TexelLobe> lobes = fitTexels(seen.light, lights, info.exponent, info.extinction);
-    const std::vector<float> maps = fitSixWay(seen, info, lights);
-    addTexelError(judged, judges, fitted,
-                  [&](size_t t, size_t l) { return texelLight(lobes[t], directions[l], info.exponent, info.extinction); });
-    addTexelError(judged, judges, stored, [&](size_t t, size_t l) {
-      return texelLight(storedTexel(baked.impostor, judged.texels[t]), directions[l], info.exponent, info.extinction);
-    });
+  TexelError fitted, stored, six_way;
+  for (const Sample& sample : samples) {
+    const SeenTexels judged = seenAt(sample.frame, 1, judging.axes, kJudgingNodes);
+    const std::vector<float> maps = fitSixWay(sample.seen, info, lights);
+    const auto lightOf = [&](const TexelLobe& texel, size_t l) { return texelLight(texel, directions[l], info.exponent, info.extinction); };
+    addTexelError(judged, judges, fitted, [&](size_t t, size_t l) { return lightOf(sample.lobes[t], l); });
+    addTexelError(judged, judges, stored, [&](size_t t, size_t l) { return lightOf(storedTexel(baked.impostor, judged.texels[t]), l); });
     addTexelError(judged, judges, six_way, [&](size_t t, size_t l) {
-      const FrameAxes axes = axesOfTexel(info, judged.texels[t]);
-      return sixWayLight(std::span(maps).subspan(6 * t, 6),
-                         {dot(axes.right, directions[l]), dot(axes.up, directions[l]), dot(axes.to_eye, directions[l])});
+      return sixWayLight(std::span(maps).subspan(6 * t, 6), inView(axesOfTexel(info, judged.texels[t]), directions[l]));
     });
   }
   fillEmptyTexels(baked.impostor);
@@ -170,18 +182,17 @@ Billboard billboardOf(const Impostor& impostor) {
   const Vec3 eye = info.center + Vec3{0, 0, 100 * info.radius};
   const ImpostorView view(impostor, eye);
   const float gain = info.gains ? light.volume_gain : 1;
+  const auto place = [&](int pixel) { return (2 * (float(pixel) + 0.5F) / kSize - 1) * info.radius; };
+  const auto byte = [](float value) { return uint8_t(std::lround(255 * std::clamp(value, 0.0F, 1.0F))); };
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
-      const auto place = [&](int pixel) { return (2 * (float(pixel) + 0.5F) / kSize - 1) * info.radius; };
       const Vec3 at = info.center + Vec3{place(x), -place(y), 0};
       const ImpostorPoint seen = view.at((at - eye) / length(at - eye), float(info.frame) / kSize);
-      const auto transmittance = [&](Vec3 to_light) { return texelLight(seen.texel, to_light, info.exponent, info.extinction); };
-      Image pixel = blankImage(1, 1);
-      if (seen.opacity > 0)
-        pixel.pixels[0] = cloudColor({std::min(1.0F, gain * transmittance(light.sky.to_sun)), transmittance({0, 1, 0})}, colors);
-      const Vec3 shown = toneMap(pixel).pixels[0];
-      const auto byte = [](float value) { return uint8_t(std::lround(255 * std::clamp(value, 0.0F, 1.0F))); };
-      const std::array<uint8_t, 4> rgba{byte(shown.x), byte(shown.y), byte(shown.z), byte(seen.opacity)};
+      const auto lightFrom = [&](Vec3 to_light) { return texelLight(seen.texel, to_light, info.exponent, info.extinction); };
+      Vec3 color;
+      if (seen.opacity > 0) color = cloudColor({std::min(1.0F, gain * lightFrom(light.sky.to_sun)), lightFrom({0, 1, 0})}, colors);
+      toneRow({&color, 1});
+      const std::array<uint8_t, 4> rgba{byte(color.x), byte(color.y), byte(color.z), byte(seen.opacity)};
       std::copy(rgba.begin(), rgba.end(), billboard.rgba.begin() + 4 * (ptrdiff_t(y) * kSize + x));
     }
   return billboard;

@@ -11,6 +11,7 @@
 #include "io/gltf/asset_info.h"
 #include "io/gltf/impostor/impostor_file.h"
 #include "io/report/report.h"
+#include "pipeline/fields/cloud.h"
 #include "pipeline/fields/stopwatch.h"
 #include "pipeline/options/settings.h"
 
@@ -37,9 +38,17 @@ struct BakedImpostor {
   std::optional<SixWayMaps> six_way;
 };
 
-/// Bakes an impostor of a baked asset, settings.source.input, whose mesh encloses a volume. Throws as readSculpt and decodeGlb do, and
-/// InputError if the mesh encloses nothing or is an impostor itself.
-BakedImpostor bakeImpostor(const Settings& settings, BakeReport& report, Stopwatch& watch);
+/// A baked asset that impostors are made of.
+struct ImpostorSubject {
+  BakedMesh mesh;
+  Cloud cloud;
+  std::string hash;  ///< XXH3-128 of its bytes, hexadecimal
+};
+/// Reads settings.source.input. Throws as readSculpt and decodeGlb do.
+ImpostorSubject readImpostorSubject(const Settings& settings, BakeReport& report, Stopwatch& watch);
+
+/// Throws InputError if the mesh encloses nothing and the volume is asked for, or if nothing of it is seen.
+BakedImpostor bakeImpostor(const ImpostorSubject& subject, const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 /// A picture of the impostor from +Z under the default sun, in the painted look's light.
 Billboard billboardOf(const Impostor& impostor);

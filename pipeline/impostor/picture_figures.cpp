@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,10 +11,8 @@
 #include "bake/lobe/sweep.h"
 #include "core/parallel.h"
 #include "core/portable_math.h"
-#include "io/file/write_file.h"
-#include "io/gltf/asset/decode.h"
 #include "pipeline/fields/fields.h"
-#include "pipeline/sources/sculpt.h"
+#include "preview/compare/image_error.h"
 #include "preview/compare/volume.h"
 #include "preview/mesh_clouds/impostor.h"
 #include "preview/mesh_clouds/render.h"
@@ -59,13 +58,13 @@ struct SixWayAtlas {
 
 // Six maps, opacity and depth are 8 bytes of a texel; those of an impostor are 6. So frames of the same bytes are smaller. Both atlases
 // have the same texels without a cloud filled from their neighbours.
-SixWayAtlas sixWayAtlas(const Settings& settings) {
+SixWayAtlas sixWayAtlas(const ImpostorSubject& subject, const Settings& settings) {
   Settings of_six = settings;
   of_six.impostor.six_way = true;
   of_six.impostor.frame = std::max(2 * kLeastFrame, int(std::lround(settings.impostor.frame * std::sqrt(6.0 / 8))));
   BakeReport told_to_nobody;
   Stopwatch watch;
-  BakedImpostor baked = bakeImpostor(of_six, told_to_nobody, watch);
+  BakedImpostor baked = bakeImpostor(subject, of_six, told_to_nobody, watch);
   const auto mapsOf = [&](const std::vector<uint8_t>& bytes, std::array<size_t, 3> channels) {
     Impostor one = baked.impostor;
     for (size_t i = 0; i < one.lobe[0].pixels.size(); ++i)
@@ -91,9 +90,7 @@ Image drawnSixWay(const SixWayAtlas& atlas, const Camera& camera, const LightSet
       const Vec3 positive = filtered(atlas.positive, place.u, place.v, place.level),
                  negative = filtered(atlas.negative, place.u, place.v, place.level);
       const std::array<float, 6> maps{positive.x, positive.y, positive.z, negative.x, negative.y, negative.z};
-      const auto from = [&](Vec3 l) {
-        return sixWayLight(maps, {dot(place.axes.right, l), dot(place.axes.up, l), dot(place.axes.to_eye, l)});
-      };
+      const auto from = [&](Vec3 l) { return sixWayLight(maps, inView(place.axes, l)); };
       sum.sun += place.weight * from(sun), sum.sky += place.weight * from({0, 1, 0});
       opacity += place.weight;
     });
@@ -102,37 +99,29 @@ Image drawnSixWay(const SixWayAtlas& atlas, const Camera& camera, const LightSet
   });
 }
 
+void addTo(PixelMask& mask, const PixelMask& more) {
+  for (size_t i = 0; i < mask.size(); ++i) mask[i] |= more[i];
+}
+
+// The rms over all pixels of many pictures that count.
 struct Sum {
   double squares = 0;
   size_t count = 0;
-  void add(const Image& a, const Image& b, const std::vector<bool>& shows) {
-    for (size_t i = 0; i < a.pixels.size(); ++i) {
-      if (!shows[i]) continue;
-      const Vec3 difference = (a.pixels[i] - b.pixels[i]) * 255;
-      squares += double(dot(difference, difference)) / 3;
-      ++count;
-    }
+  void add(const Image& a, const Image& b, const PixelMask& mask) {
+    const double rms = 255 * imageRms(a, b, mask);
+    const auto own = size_t(std::ranges::count(mask, 1));
+    squares += rms * rms * double(own);
+    count += own;
   }
   double rms() const { return std::sqrt(squares / double(std::max<size_t>(1, count))); }
 };
 
-std::vector<bool> shownIn(std::initializer_list<const Image*> pictures, const Image& sky) {
-  std::vector<bool> shows(sky.pixels.size());
-  for (const Image* picture : pictures)
-    for (size_t i = 0; i < shows.size(); ++i) shows[i] = shows[i] || length(picture->pixels[i] - sky.pixels[i]) > 0.5F / 255;
-  return shows;
-}
-
 }  // namespace
 
-std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImpostor& baked, BakeReport& report) {
+std::vector<SizeFigures> pictureFigures(const ImpostorSubject& subject, const Settings& settings, const BakedImpostor& baked,
+                                        BakeReport& report) {
   const ImpostorInfo& info = baked.impostor.info;
-  const std::filesystem::path& file = settings.source.input;
-  Warnings told;
-  const BakedMesh mesh = decodeGlb(file, readFileBytes(file), told, settings.source.read);
-  BakeReport told_to_nobody;
-  Stopwatch watch;
-  const Cloud cloud = readSculpt(settings, told_to_nobody, watch);
+  const auto& [mesh, cloud, hash] = subject;
   FieldSettings fine = settings.field;
   fine.bake_voxels = 128;
   const IntegrationField field = buildField(cloud, fine, Method::kSweep, report.warnings);
@@ -148,7 +137,7 @@ std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImp
   volume_settings.extinction = info.extinction;
   volume_settings.light = settings.lobe.volume.over(mesh.info.volume.value_or(VolumeLight{}));
 
-  const SixWayAtlas six_way = sixWayAtlas(settings);
+  const SixWayAtlas six_way = sixWayAtlas(subject, settings);
 
   std::vector<SizeFigures> figures;
   std::array<std::array<Sum, 5>, kSizes.size()> sums;
@@ -176,7 +165,8 @@ std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImp
         const auto shownAt = [&](const Image& image) { return toneMap(resized(image, kSizes[size])); };
         const Image truth = shownAt(of_volume), opaque = shownAt(of_mesh), gentle = shownAt(of_soft),
                     quad = toneMap(renderImpostor(baked.impostor, camera, light)), six = toneMap(drawnSixWay(six_way, camera, light));
-        const std::vector<bool> shows = shownIn({&truth, &opaque, &quad}, shownAt(sky));
+        PixelMask shows = cloudMask(truth, opaque, shownAt(sky));
+        addTo(shows, cloudMask(quad, quad, shownAt(sky)));
         sums[size][0].add(quad, truth, shows), sums[size][1].add(six, truth, shows), sums[size][2].add(opaque, truth, shows);
         sums[size][3].add(gentle, truth, shows), sums[size][4].add(quad, opaque, shows);
       }
@@ -199,7 +189,7 @@ std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImp
         meshes[size_t(next)] = toneMap(resized(renderLobe(mesh, finest, light), kSizes[size]));
         sky = toneMap(renderSky(camera, light.sky, 1));
       }
-      const std::vector<bool> shows = shownIn({&quads[0], &meshes[0]}, sky);
+      const PixelMask shows = cloudMask(quads[0], meshes[0], sky);
       of_impostor.add(quads[0], quads[1], shows), of_mesh.add(meshes[0], meshes[1], shows);
     }
     const auto& all = sums[size];

@@ -19,7 +19,8 @@ struct SizeFigures {
 };
 
 /// Pictures of 60 views with 2 of 24 suns each, in the plain look; the judge is renderVolume (preview/compare/volume.h).
-std::vector<SizeFigures> pictureFigures(const Settings& settings, const BakedImpostor& baked, BakeReport& report);
+std::vector<SizeFigures> pictureFigures(const ImpostorSubject& subject, const Settings& settings, const BakedImpostor& baked,
+                                        BakeReport& report);
 
 std::string pictureFiguresText(const std::vector<SizeFigures>& figures);
 Json pictureFiguresJson(const std::vector<SizeFigures>& figures);

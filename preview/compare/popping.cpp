@@ -40,17 +40,6 @@ Camera cameraFrom(const Box& box, float azimuth) {
   return camera;
 }
 
-// Means of 2 × 2 pixels.
-Image halved(const Image& image) {
-  Image half = blankImage(image.width / 2, image.height / 2);
-  parallelFor(half.height, [&](int y) {
-    for (int x = 0; x < half.width; ++x)
-      half.at(x, y) = (image.at(2 * x, 2 * y) / 4 + image.at(2 * x + 1, 2 * y) / 4) + image.at(2 * x, 2 * y + 1) / 4 +
-                      image.at(2 * x + 1, 2 * y + 1) / 4;
-  });
-  return half;
-}
-
 Image drawn(const BakedMesh& mesh, const Camera& camera, const Image* sky = nullptr) {
   LightSettings light = lightForSun(kSunAzimuth, kSunElevation);
   light.samples_per_side = 1;

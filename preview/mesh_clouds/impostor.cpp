@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/affine.h"
 #include "core/lobe_lighting.h"
@@ -113,12 +114,6 @@ Image renderImpostor(const Impostor& impostor, const Camera& camera, const Light
 
 namespace {
 
-/// An instance that is an impostor, ready to be drawn.
-struct PlacedImpostor {
-  const Instance* instance;
-  float distance;  // of its center
-};
-
 // Two colours of a pixel, the nearer one before the other.
 Rgba over(const Rgba& a, const Rgba& b) {
   const bool a_is_near = a[3] <= b[3];
@@ -142,10 +137,9 @@ void addImpostor(Image4& channels, const Instance& instance, const Camera& camer
   const float reach = impostor.info.radius;
   int left = camera.width, right = -1, top = camera.height, bottom = -1;
   const float per_pixel = 2 * std::tan(camera.vertical_fov_degrees * float(kPi / 360)) / float(camera.height);
+  const Vec3 half{reach, reach, reach};
+  const Box ball{impostor.info.center - half, impostor.info.center + half};
   for (int corner = 0; corner < 8; ++corner) {
-    Box ball;
-    ball.add(impostor.info.center - Vec3{reach, reach, reach});
-    ball.add(impostor.info.center + Vec3{reach, reach, reach});
     const Vec3 from = transformPoint(instance.to_world, ball.corner(corner)) - camera.look_from;
     const float depth = dot(from, axes.forward) * per_pixel;
     if (!(depth > 0)) {
@@ -195,12 +189,12 @@ void addImpostor(Image4& channels, const Instance& instance, const Camera& camer
 
 void addImpostors(Image4& channels, std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                   const DepthRange& range) {
-  std::vector<PlacedImpostor> placed;
+  std::vector<std::pair<float, const Instance*>> placed;  // by the distance of the center
   for (const Instance& instance : instances)
     if (instance.is_seen && instance.mesh->impostor)
-      placed.push_back({&instance, length(transformPoint(instance.to_world, instance.mesh->impostor->info.center) - camera.look_from)});
-  std::stable_sort(placed.begin(), placed.end(), [](const PlacedImpostor& a, const PlacedImpostor& b) { return a.distance > b.distance; });
-  for (const PlacedImpostor& one : placed) addImpostor(channels, *one.instance, camera, light, range);
+      placed.emplace_back(length(transformPoint(instance.to_world, instance.mesh->impostor->info.center) - camera.look_from), &instance);
+  std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [distance, instance] : placed) addImpostor(channels, *instance, camera, light, range);
 }
 
 }  // namespace cloudbake

@@ -119,7 +119,9 @@ ImpostorFiles encodeImpostor(const Impostor& impostor, const Billboard& billboar
 
 bool isImpostor(std::string_view bytes) {
   try {
-    const auto json = parseJson(splitGlb("", bytes).json);
+    const std::string_view text = splitGlb("", bytes).json;
+    if (text.find(kImpostorLayout) == text.npos) return false;  // most files, without the time to parse them
+    const auto json = parseJson(text);
     return json && isImpostorDocument(*json);
   } catch (const std::exception&) {
     return false;

@@ -59,7 +59,7 @@ TEST(SeenOfMesh, IsItsLobesWhereTheEyeMeetsThem) {
   BakedMesh ball = bakedBall(1, {}, 5);
   const std::vector<Vec3> axes = sweepAxes(8);
   for (const float half_lambert : {1.0F, 0.3F}) {
-    const SeenTexels seen = seenOfMesh(info, 4, 1, {ball, half_lambert}, axes);
+    const SeenTexels seen = seenOfMesh(info, 4, 1, MeshFrames(ball, half_lambert, info), axes);
     const size_t middle = middleOf(seen, info, 1, 1);
     ASSERT_LT(middle, seen.texels.size());
     EXPECT_EQ(seen.opacity[middle], 1);
@@ -111,7 +111,7 @@ TEST(SixWay, IsExactForLightOfItsOwnForm) {
   seen.texels = {uint32_t(info.frame / 2)};
   seen.opacity = {1};
   const FrameAxes frame = axesOfTexel(info, seen.texels[0]);
-  for (const Vec3& l : lights) seen.light.push_back(sixWayLight(maps, {dot(frame.right, l), dot(frame.up, l), dot(frame.to_eye, l)}));
+  for (const Vec3& l : lights) seen.light.push_back(sixWayLight(maps, inView(frame, l)));
   const std::vector<float> found = fitSixWay(seen, info, {axes, weights});
   for (size_t i = 0; i < maps.size(); ++i) EXPECT_NEAR(found[i], maps[i], 0.5F / 255 + 1e-4F) << i;
 }

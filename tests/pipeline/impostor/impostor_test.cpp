@@ -31,7 +31,7 @@ Settings impostorOf(const std::filesystem::path& asset) {
 BakedImpostor baked(const Settings& settings) {
   BakeReport report;
   Stopwatch watch;
-  return bakeImpostor(settings, report, watch);
+  return bakeImpostor(readImpostorSubject(settings, report, watch), settings, report, watch);
 }
 
 TEST(BakeImpostor, IsNearerToTheLightThanSixWayMapsAndKeepsItWhenStored) {
