@@ -7,7 +7,16 @@ import { DAY, SKY, SOFT_NAMES, addSoftSettings, cloudDefaults, impostorDefaults,
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
 import { CAST_SHADOW, CHANNELS, IMPOSTOR_PIXEL, IMPOSTOR_SQUARE, IMPOSTOR_VARYINGS, LAMPS, PIXEL_COLOR, SHADE, SKY_COLOR, SOFT, TONE,
   VARYINGS, harmonicNames, vertexLight, writeVaryings } from './shaders.js';
+import { darkenLights } from './three_darken.js';
 import { SOLID_DISTANCE } from './three_depth.js';
+
+const TO_WORLD = `mat4 to_world = modelMatrix;
+  #ifdef USE_INSTANCING
+    to_world *= instanceMatrix;
+  #endif
+  #ifdef USE_BATCHING
+    to_world *= batchingMatrix;
+  #endif`;
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? 'uv' : n < 4 ? `uv${n}` : `texcoord_${n}`;
@@ -45,13 +54,7 @@ void main() {
   #include <project_vertex>
   #include <logdepthbuf_vertex>
   #include <fog_vertex>
-  mat4 to_world = modelMatrix;
-  #ifdef USE_INSTANCING
-    to_world *= instanceMatrix;
-  #endif
-  #ifdef USE_BATCHING
-    to_world *= batchingMatrix;
-  #endif
+  ${TO_WORLD}
   vec3 place = (to_world * vec4(transformed, 1.0)).xyz;
   #ifdef USE_SKINNING
     mat4 blend = skinWeight.x * boneMatX + skinWeight.y * boneMatY + skinWeight.z * boneMatZ + skinWeight.w * boneMatW;
@@ -131,13 +134,7 @@ ${IMPOSTOR_VARYINGS}
 ${IMPOSTOR_SQUARE}
 void main() {
   #include <batching_vertex>
-  mat4 to_world = modelMatrix;
-  #ifdef USE_INSTANCING
-    to_world *= instanceMatrix;
-  #endif
-  #ifdef USE_BATCHING
-    to_world *= batchingMatrix;
-  #endif
+  ${TO_WORLD}
   vec3 axis = vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]);
   vec3 place = cornerInWorld(position.xy, to_world, cameraPosition, axis, !isOrthographic);
   vec4 mvPosition = viewMatrix * vec4(place, 1.0);
@@ -606,24 +603,6 @@ export class CloudShadow {
 
   // A built-in material with lights gets the shadow: its direct light is darkened.
   darken(material) {
-    material.onBeforeCompile = shader => {
-      Object.assign(shader.uniforms, this.uniforms);
-      shader.vertexShader = shader.vertexShader.replace('#include <common>', '#include <common>\nvarying vec3 cloud_shadow_place;')
-        .replace('#include <project_vertex>', `#include <project_vertex>
-          mat4 shadow_to_world = modelMatrix;
-          #ifdef USE_INSTANCING
-            shadow_to_world *= instanceMatrix;
-          #endif
-          cloud_shadow_place = (shadow_to_world * vec4(transformed, 1.0)).xyz;`);
-      shader.fragmentShader = shader.fragmentShader
-        .replace('#include <common>', `#include <common>\nvarying vec3 cloud_shadow_place;\n${CAST_SHADOW}`)
-        .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
-          float cloud_shade = castShadow(cloud_shadow_place);
-          reflectedLight.directDiffuse *= cloud_shade;
-          reflectedLight.directSpecular *= cloud_shade;`);
-    };
-    material.customProgramCacheKey = () => 'cloudbake shadow';
-    material.needsUpdate = true;
-    return material;
+    return darkenLights(material, this.uniforms, { name: 'cloud_shadow', text: CAST_SHADOW, share: 'castShadow' });
   }
 }

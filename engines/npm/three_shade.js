@@ -4,6 +4,7 @@ import { Box3, Data3DTexture, DataTexture, DataUtils, HalfFloatType, InstancedBu
 import { casterOf } from './caster.js';
 import { ShadeGrid, shadeFrame } from './shade_grid.js';
 import { SweptShadow } from './swept_shadow.js';
+import { darkenLights } from './three_darken.js';
 
 const READ_SHADE = `
 uniform highp sampler2D cloud_ground;
@@ -136,25 +137,7 @@ export class CloudShade {
 
   // A built-in material with lights gets the shade of all clouds: its direct light is darkened. For things below the clouds.
   darken(material) {
-    material.onBeforeCompile = shader => {
-      Object.assign(shader.uniforms, this.uniforms);
-      shader.vertexShader = shader.vertexShader.replace('#include <common>', '#include <common>\nvarying vec3 cloud_shade_place;')
-        .replace('#include <project_vertex>', `#include <project_vertex>
-          mat4 shade_to_world = modelMatrix;
-          #ifdef USE_INSTANCING
-            shade_to_world *= instanceMatrix;
-          #endif
-          cloud_shade_place = (shade_to_world * vec4(transformed, 1.0)).xyz;`);
-      shader.fragmentShader = shader.fragmentShader
-        .replace('#include <common>', `#include <common>\nvarying vec3 cloud_shade_place;\n${READ_SHADE}`)
-        .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
-          float cloud_shade = shadeOfClouds(cloud_shade_place);
-          reflectedLight.directDiffuse *= cloud_shade;
-          reflectedLight.directSpecular *= cloud_shade;`);
-    };
-    material.customProgramCacheKey = () => 'cloudbake shade';
-    material.needsUpdate = true;
-    return material;
+    return darkenLights(material, this.uniforms, { name: 'cloud_shade', text: READ_SHADE, share: 'shadeOfClouds' });
   }
 
   dispose() {

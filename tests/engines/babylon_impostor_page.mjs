@@ -1,14 +1,13 @@
 // Draws lobe impostors in Babylon.js, for impostor.mjs.
 import '@babylonjs/loaders/glTF/2.0/index.js';
-import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
 import { LoadAssetContainerAsync } from '@babylonjs/core/Loading/sceneLoader.js';
 import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
-import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Matrix } from '@babylonjs/core/Maths/math.vector.js';
 import '@babylonjs/core/Meshes/thinInstanceMesh.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import { SkyMaterial, createCloudSky, impostorMaterialOf } from 'cloudbake-materials/babylon';
-import { colorOf, engineOf, inScene } from './babylon_page.mjs';
+import { colorOf, engineOf, lookAt } from './babylon_page.mjs';
 
 export async function load(file, { rightHanded = true } = {}) {
   const scene = new Scene(engineOf([300, 200]));
@@ -50,16 +49,8 @@ export function place(subject, matrices, kind) {
 }
 
 // The linear values of one sample per pixel, rows from the top.
-export async function draw(subject, { size: [width, height], camera, sun, colors, changes = {} }) {
-  const { scene, sky, material } = subject, eye = scene.activeCamera ?? new FreeCamera('eye', Vector3.Zero(), scene);
-  engineOf([width, height]);
-  eye.position = inScene(subject, camera.from);
-  eye.setTarget(inScene(subject, camera.at));
-  Object.assign(eye, { fov: camera.fov * Math.PI / 180, minZ: camera.distance / 100, maxZ: camera.distance * 10 });
-  for (const own of [material, sky])
-    Object.assign(own, { sunDirection: inScene(subject, sun), sunColor: colorOf(colors.sun_color), tone: 'linear' });
-  const [zenith, lowSky, horizon, ground] = ['zenith', 'low_sky', 'horizon', 'ground'].map(name => colorOf(colors[name]));
-  Object.assign(sky, { zenith, lowSky, horizon, ground });
+export async function draw(subject, view) {
+  const { size: [width, height], colors, changes = {} } = view, { scene, material } = subject, eye = lookAt(subject, view);
   Object.assign(material, { ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...changes });
   const target = new RenderTargetTexture('target', { width, height }, scene,
     { type: Constants.TEXTURETYPE_FLOAT, generateMipMaps: false, samplingMode: Constants.TEXTURE_NEAREST_SAMPLINGMODE });

@@ -63,8 +63,9 @@ export function instanced(nodes, single, kind) {
 // The axes of the scene: without useRightHandedSystem the loader mirrors x.
 export const inScene = ({ rightHanded }, [x, y, z]) => new Vector3(rightHanded ? x : -x, y, z);
 
-export function prepare(subject, { size, camera, sun, colors, light, fog, changes = {} }) {
-  const { scene, meshes, sky, material, settings } = subject, eye = scene.activeCamera ?? new FreeCamera('eye', Vector3.Zero(), scene);
+// The camera of a view, with the light of its sun and sky on the subject's material and sky.
+export function lookAt(subject, { size, camera, sun, colors }) {
+  const { scene, sky, material } = subject, eye = scene.activeCamera ?? new FreeCamera('eye', Vector3.Zero(), scene);
   engineOf(size);
   eye.position = inScene(subject, camera.from);
   eye.setTarget(inScene(subject, camera.at));
@@ -73,6 +74,11 @@ export function prepare(subject, { size, camera, sun, colors, light, fog, change
     Object.assign(own, { sunDirection: inScene(subject, sun), sunColor: colorOf(colors.sun_color), tone: 'linear' });
   const [zenith, lowSky, horizon, ground] = ['zenith', 'low_sky', 'horizon', 'ground'].map(name => colorOf(colors[name]));
   Object.assign(sky, { zenith, lowSky, horizon, ground });
+  return eye;
+}
+
+export function prepare(subject, view) {
+  const { sun, colors, light, fog, changes = {} } = view, { scene, meshes, material, settings } = subject, eye = lookAt(subject, view);
   const { uvSets, ...own } = settings, { doubleSided, ...others } = changes;
   const used = others.uvSets ? new CloudMaterial('other', scene, { uvSets: others.uvSets }) : material;
   const { sunDirection, sunColor, tone } = material;

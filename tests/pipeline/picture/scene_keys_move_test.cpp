@@ -275,6 +275,8 @@ std::vector<Pair> specialPairs() {
   const std::string dust = kSmall + "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\n[[dust]]\nlattice = 'a.json'\nthickness = 3\n";
   const std::string cloud = kClouds + "[[cloud]]\nfile = 'a.glb'\nscale = [1, 0.4, 0.7]\n", hours = "[[sky.hours]]\nelevation = -30\n";
   const std::string field = kBeforeClouds + "[[cloud]]\nfile = 'a.glb'\nscale = 0.4\n[cloud.scatter]\ncount = 12\n";
+  const std::string shaded = kSmall + "[sun]\nazimuth = 90\nelevation = 12\n[light]\n",
+                    in_a_row = "[[cloud]]\nfile = 'a.glb'\n[[cloud]]\nfile = 'a.glb'\nposition = [2.5, 0, 0]\n";
   const std::string marched = kUpwards + kSun + "[[marched]]\n", moon = kNight + "[sky.moon]\nphase = 90\n";
   return {
       {"picture.layout", kSmall, "", "layout = 'techniques'\n", kTwoClouds},
@@ -291,6 +293,8 @@ std::vector<Pair> specialPairs() {
       {"sky.moon.disc", moon + "elevation = 17\n", "", "disc = 'smooth'\n", kTwoClouds},
       {"sky.moon.up", moon + "elevation = 17\n", "", "up = [1, 0, 0]\n", kTwoClouds},
       {"sky.stars.pole", kNight + "[sky.stars]\nbrightness = 9\nsize = 2\nturn = 30\n", "", "pole = [1, 0, 0]\n", kTwoClouds},
+      {"light.cloud_shade", shaded, "cloud_shade = 'none'\n", "cloud_shade = 'each'\n", in_a_row},
+      {"light.cloud_shade", shaded, "cloud_shade = 'none'\n", "cloud_shade = 'grid'\n", in_a_row},
       {"chain.as_published", kClouds + "[chain]\n", "", published, kTwoClouds},
       {"chain.mean", kClouds + "[chain]\n" + published, "", "mean = 'all'\n", kTwoClouds},
       {"cloud.position", cloud, "", "position = [0, 0.3, 0]\n", ""},
