@@ -29,6 +29,31 @@ std::vector<Vec3> drawnPoints(const SurfaceMesh& surface) {
   return points;
 }
 
+// The means over pixels of the shares that pass to the plane of the frame through `middle`. Nothing is in the way of an empty passage.
+void fillPicture(ShadowPicture& picture, Vec3 middle, const LightPassage& passage) {
+  const ShadowFrame& frame = picture.frame;
+  const auto size = size_t(picture.size);
+  picture.transmittance.resize(size * size);
+  parallelFor(size, [&](size_t row) {
+    std::vector<Vec3> points;
+    for (size_t column = 0; column < size; ++column)
+      for (int j = 0; j < kPlaces; ++j)
+        for (int i = 0; i < kPlaces; ++i) {
+          const float x = (float(column) + (float(i) + 0.5F) / kPlaces) / float(size) - 0.5F;
+          const float y = 0.5F - (float(row) + (float(j) + 0.5F) / kPlaces) / float(size);
+          points.push_back(middle + frame.right * (x * frame.width) + frame.up * (y * frame.height));
+        }
+    std::vector<float> shares(points.size(), 1);
+    if (passage) passage(points, shares);
+    for (size_t column = 0; column < size; ++column) {
+      constexpr size_t kAll = size_t(kPlaces) * kPlaces;
+      float sum = 0;
+      for (size_t i = 0; i < kAll; ++i) sum += shares[column * kAll + i];
+      picture.transmittance[row * size + column] = sum / kAll;
+    }
+  });
+}
+
 Json numbersOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 
 }  // namespace
@@ -56,18 +81,8 @@ ShadowPicture drawShadow(const BakedMesh& mesh, Vec3 to_sun, int size, std::opti
 
   const CloudShadow shadow(caster, Affine{}, picture.extinction, to_sun, {.softness_degrees = 0});
   const Vec3 behind = frame.origin - to_sun * (4 * (frame.top - frame.bottom) + 4 * caster.cell_size);
-  picture.transmittance.resize(size_t(size) * size_t(size));
-  parallelFor(size, [&](int row) {
-    for (int column = 0; column < size; ++column) {
-      float sum = 0;
-      for (int j = 0; j < kPlaces; ++j)
-        for (int i = 0; i < kPlaces; ++i) {
-          const float x = (float(column) + (float(i) + 0.5F) / kPlaces) / float(size) - 0.5F;
-          const float y = 0.5F - (float(row) + (float(j) + 0.5F) / kPlaces) / float(size);
-          sum += shadow.shareAt(behind + frame.right * (x * frame.width) + frame.up * (y * frame.height));
-        }
-      picture.transmittance[size_t(row) * size_t(size) + size_t(column)] = sum / (kPlaces * kPlaces);
-    }
+  fillPicture(picture, behind, [&](std::span<const Vec3> points, std::span<float> shares) {
+    for (size_t i = 0; i < points.size(); ++i) shares[i] = shadow.shareAt(points[i]);
   });
   return picture;
 }
@@ -106,20 +121,7 @@ ShadowPicture drawShadow(const Scenery& scenery, const ShadowPictureSettings& se
   const SceneShadows shadows(scene, instances);
   const LightPassage passage = shadows.past(SceneShadows::Kind::kTerrain);
   const Vec3 behind = frame.origin - to_sun * (2 * (frame.top - frame.bottom));
-  picture.transmittance.resize(size_t(picture.size) * size_t(picture.size));
-  parallelFor(picture.size, [&](int row) {
-    std::vector<Vec3> points;
-    for (int column = 0; column < picture.size; ++column)
-      for (int place = 0; place < kPlaces * kPlaces; ++place) {
-        const float x = (float(column) + (float(place % kPlaces) + 0.5F) / kPlaces) / float(picture.size) - 0.5F;
-        const float y = 0.5F - (float(row) + (float(place / kPlaces) + 0.5F) / kPlaces) / float(picture.size);
-        points.push_back(behind + frame.right * (x * frame.width) + frame.up * (y * frame.height));
-      }
-    std::vector<float> shares(points.size(), 1);
-    if (passage) passage(points, shares);
-    for (size_t i = 0; i < shares.size(); ++i)
-      picture.transmittance[size_t(row) * size_t(picture.size) + i / (kPlaces * kPlaces)] += shares[i] / (kPlaces * kPlaces);
-  });
+  fillPicture(picture, behind, passage);
   return picture;
 }
 
