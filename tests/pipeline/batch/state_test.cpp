@@ -99,7 +99,8 @@ std::vector<Given> companionsOf(const Option& option) {
                                                                         {"octaves", volume},
                                                                         {"view-extinction", volume},
                                                                         {"phase", volume},
-                                                                        {"noise-size", {"noise=3%"}}};
+                                                                        {"noise-size", {"noise=3%"}},
+                                                                        {"pack-as", {"pack=8"}}};
   const auto found = companions.find(option.name);
   return found == companions.end() ? std::vector<Given>{} : options(found->second, kBatch);
 }
