@@ -185,9 +185,9 @@ class MeshCollector {
       const normal = applyLinear(cofactors, normals.subarray(3 * v, 3 * v + 3)), size = mirrored * Math.hypot(...normal);
       all.normals.push(...normal.map(x => x / size || 0));
       const stored = [one[2 * v], one[2 * v + 1], two[2 * v], two[2 * v + 1]];
-      const lobe = this.densityMax > 0 ? unpackedLobe(stored[0], stored[1], stored[3], this.densityMax) : stored;
-      const direction = applyLinear(matrix, lobe.slice(0, 3)), stretch = Math.hypot(...direction);
-      all.lobes.push(...direction.map(x => x / stretch || 0), lobe[3] * stretch);
+      const [x, y, z, thickness] = this.densityMax > 0 ? unpackedLobe(stored[0], stored[1], stored[3], this.densityMax) : stored;
+      const direction = applyLinear(matrix, [x, y, z]), stretch = Math.hypot(...direction);
+      all.lobes.push(...direction.map(part => part / stretch || 0), thickness * stretch);
     }
   }
 

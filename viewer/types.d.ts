@@ -44,10 +44,10 @@ interface Arrays {
 /** Harmonics of the transmittance on a lattice of cells. */
 interface Lattice { origin: Vec3; cell_size: number; cells: [number, number, number]; coefficients: number; values: Float32Array }
 
-interface Caster { origin: Vec3; cell_size: number; cells: [number, number, number]; fractions: Uint8Array }
+type Caster = import('../engines/npm/swept_shadow.js').Caster;
 
 /** Where the nodes of a grid are by which clouds shade each other. */
-interface ShadeFrame { rows: number[][]; nodes: number[]; axis: number }
+type ShadeFrame = import('../engines/npm/shade_grid.js').ShadeFrame;
 
 /** A placed impostor. Center and radius are those of its ball in the world; the matrices are columns, 'to_own' leads to radii. */
 interface PlacedImpostor {

@@ -94,7 +94,8 @@ def unpack(mesh, density_max):
         values = numpy.empty(2 * len(layer), numpy.float32)
         layer.foreach_get("uv", values)
         sets.append(values.reshape(-1, 2).astype(numpy.float64) * (1, -1) + (0, 1))
-    for layer, values in zip(layers, glb.unpacked_lobes(*sets, density_max)):
+    first, second = sets
+    for layer, values in zip(layers, glb.unpacked_lobes(first, second, density_max)):
         layer.foreach_set("uv", (values * (1, -1) + (0, 1)).astype(numpy.float32).ravel())
 
 

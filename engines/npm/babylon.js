@@ -446,7 +446,8 @@ class CloudbakeExtension {
     const material = new ImpostorMaterial('impostor', babylonScene, { ...settings, lobeTexture, restTexture });
     for (const mesh of rootBabylonMesh.getChildMeshes(false, one => one instanceof Mesh && one.getTotalVertices() > 0)) {
       mesh.material = material;
-      mesh.setBoundingInfo(new BoundingInfo(...[-radius, radius].map(reach => Vector3.FromArray(center.map(x => x + reach)))));
+      const corner = reach => Vector3.FromArray(center.map(x => x + reach));
+      mesh.setBoundingInfo(new BoundingInfo(corner(-radius), corner(radius)));
     }
   }
 

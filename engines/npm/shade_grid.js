@@ -22,6 +22,9 @@ function shearedBox(low, high, light, axis) {
   return box;
 }
 
+/** @typedef {number[]} Vec3 */
+/** @typedef {{ rows: number[][], nodes: number[], axis: number }} ShadeFrame where the nodes of a grid are by which clouds shade each other */
+
 /**
  * The frame in which a box of the world fits: rows that take a point of the world, with 1 as fourth, to coordinates of nodes.
  * @param {{ low: Vec3, high: Vec3, cloud_size: number }} extent @param {Vec3} light @param {Vec3} wind @returns {ShadeFrame}

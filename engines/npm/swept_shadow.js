@@ -1,5 +1,7 @@
 // The shadow of a cloud on others, from its field of inside fractions: preview/mesh_clouds/cloud_shadow.h.
 
+/** @typedef {{ origin: number[], cell_size: number, cells: [number, number, number], fractions: Uint8Array }} Caster */
+
 const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
 
 // Reads the fractions of a field by slices along an axis: the fraction at (k, b, c), 0 outside, and the first and the last slice with any.

@@ -20,7 +20,7 @@ float shadeOfClouds(vec3 place) {
 }
 `;
 
-// A texture of half floats between 0 and 1 that is read between its places.
+/** A texture of half floats between 0 and 1 that is read between its places. @param {number[]} size @param {ArrayLike<number>} numbers */
 function textureOf([width, height, depth], numbers) {
   const halves = Uint16Array.from(numbers, DataUtils.toHalfFloat);
   const texture = depth ? new Data3DTexture(halves, width, height, depth) : new DataTexture(halves, width, height);

@@ -27,7 +27,7 @@ struct Elements {
 }
 
 size_t componentBytes(const GltfAccessors& accessors, int type, const std::string& owner) {
-  switch (type) {
+  switch (type) {  // NOLINT(bugprone-branch-clone): they differ in T
     case TINYGLTF_COMPONENT_TYPE_BYTE:
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
@@ -71,7 +71,7 @@ double component(const unsigned char* data, bool normalized) {
 // Calls use(T()) for the T of a component type.
 template <class Use>
 void withComponentType(int type, const Use& use) {
-  switch (type) {
+  switch (type) {  // NOLINT(bugprone-branch-clone): they differ in T
     case TINYGLTF_COMPONENT_TYPE_BYTE: return use(int8_t());
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return use(uint8_t());
     case TINYGLTF_COMPONENT_TYPE_SHORT: return use(int16_t());

@@ -183,7 +183,7 @@ std::vector<SizeFigures> pictureFigures(const ImpostorSubject& subject, const Se
       std::array<Image, 2> quads, meshes;
       Image sky;
       for (int next = 0; next < 2; ++next) {
-        const Vec3 to_eye = directionFromAngles(float(360 * turn / kTurns + next), 12);
+        const Vec3 to_eye = directionFromAngles(360 * float(turn) / kTurns + float(next), 12);
         const Camera camera = cameraFrom(info, to_eye, kSizes[size]), finest = cameraFrom(info, to_eye, kFinest);
         quads[size_t(next)] = toneMap(renderImpostor(baked.impostor, camera, light));
         meshes[size_t(next)] = toneMap(resized(renderLobe(mesh, finest, light), kSizes[size]));

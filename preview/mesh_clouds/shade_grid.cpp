@@ -157,10 +157,10 @@ int ShadeGrid::stepsAt(const Columns& columns, int i, int j, int slice) {
 ShadeGrid::ShadeGrid(const ShadeFrame& frame, std::span<const CloudShadow> shadows, Vec3 to_light) : frame_(frame) {
   columns_.resize(shadows.size());
   parallelFor(shadows.size(), [&](size_t c) { columns_[c] = columnsOf(shadows[c], to_light); });
-  const auto [width, height, depth] = frame_.nodes;
+  const int width = frame_.nodes[0], height = frame_.nodes[1], depth = frame_.nodes[2];
   std::vector<std::vector<uint32_t>> in_row(static_cast<size_t>(height));
   for (size_t c = 0; c < columns_.size(); ++c)
-    for (int j = 0; j < columns_[c].count[1]; ++j) in_row[size_t(columns_[c].first[1] + j)].push_back(uint32_t(c));
+    for (int j = 0; j < columns_[c].count[1]; ++j) in_row[size_t(columns_[c].first[1]) + size_t(j)].push_back(uint32_t(c));
 
   // Each cloud adds the changes from slice to slice; their sums along the light are the depths.
   const size_t slice = size_t(width) * size_t(height);

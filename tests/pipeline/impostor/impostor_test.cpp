@@ -17,7 +17,7 @@ namespace {
 // A grown cloud as a baked asset.
 std::filesystem::path hero() {
   static const TestFolder folder;
-  const std::filesystem::path file = folder.path / "hero.glb";
+  std::filesystem::path file = folder.path / "hero.glb";
   if (!std::filesystem::exists(file)) writeFileAtomically(file, grow("hero", {{"vertices", "2000"}}).glb);
   return file;
 }

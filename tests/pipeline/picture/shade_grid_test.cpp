@@ -130,7 +130,8 @@ TEST(ShadeGrid, TheOwnPartIsLeftOutExactly) {
   std::vector<CloudShadow> shadows;
   Box box;
   for (int i = 0; i < 9; ++i) {
-    const Affine place = placement({0.4F * float(i % 3), 0.9F * float(i), 0.3F * float(i / 3)}, {0, 30.0F * float(i), 0}, {1, 1.2F, 0.8F});
+    const int row = i / 3;
+    const Affine place = placement({0.4F * float(i % 3), 0.9F * float(i), 0.3F * float(row)}, {0, 30.0F * float(i), 0}, {1, 1.2F, 0.8F});
     shadows.emplace_back(coarserCaster(ball.caster, kShadeCoarser), place, 0.7F, to_sun, ShadowSettings{});
     for (const auto& c : shadows.back().corners()) box.add({float(c[0]), float(c[1]), float(c[2])});
   }
@@ -273,7 +274,7 @@ TEST(ShadeGrid, FieldsDriftWithoutAJump) {
     }
   }
   std::printf("largest change of T in 1/30 s: each %.4f, grid %.4f; rms %.5f, %.5f\n", largest[0], largest[1],
-              std::sqrt(squares[0] / double(changes / 2)), std::sqrt(squares[1] / double(changes / 2)));
+              std::sqrt(2 * squares[0] / double(changes)), std::sqrt(2 * squares[1] / double(changes)));
   EXPECT_LT(squares[1], squares[0]);
   EXPECT_LT(largest[1], largest[0]);
 }

@@ -23,7 +23,8 @@ std::string bentSheet(int n, Vec3 origin, size_t pieces = 1) {
   std::vector<Vec3> positions, normals;
   std::vector<uint16_t> indices;
   for (int i = 0; i < n * n; ++i) {
-    const float x = float(i % n) / float(n), y = float(i / n) / float(n);
+    const int row = i / n;
+    const float x = float(i % n) / float(n), y = float(row) / float(n);
     positions.push_back(origin + Vec3{x, y, 0.2F * x * y});
     normals.push_back(*normalized({-0.2F * y, -0.2F * x, 1}));
   }
