@@ -27,7 +27,7 @@ struct Elements {
 }
 
 size_t componentBytes(const GltfAccessors& accessors, int type, const std::string& owner) {
-  switch (type) {  // NOLINT(bugprone-branch-clone): they differ in T
+  switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
