@@ -4,14 +4,9 @@
 #include <cmath>
 
 #include "core/lobe_lighting.h"
+#include "core/lobe_packing.h"
 
 namespace cloudbake {
-
-namespace {
-
-float signOf(float value) { return value < 0 ? -1.0F : 1.0F; }
-
-}  // namespace
 
 float texelLight(const TexelLobe& texel, Vec3 to_light, float exponent, float extinction) {
   return texel.lit * lobeTransmittance(texel.lobe, to_light, {exponent, 0}, extinction);
@@ -46,15 +41,14 @@ BakedMesh boxWithImpostor(Impostor impostor) {
 
 namespace {
 
-// The map of an octahedron whose middle is +z: the lower half is folded over the edges of the square −1 … 1.
+// −1 … 1 along both axes.
 Vec2 octahedral(Vec3 d) {
-  const float sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
-  const float x = d.x / sum, y = d.y / sum;
-  return d.z >= 0 ? Vec2{x, y} : Vec2{(1 - std::abs(y)) * signOf(x), (1 - std::abs(x)) * signOf(y)};
+  const std::array<double, 2> place = octahedronPlace(d.x, d.y, d.z);
+  return {float(place[0]), float(place[1])};
 }
 Vec3 fromOctahedral(Vec2 at) {
-  const float z = 1 - std::abs(at.x) - std::abs(at.y);
-  const Vec3 d = z >= 0 ? Vec3{at.x, at.y, z} : Vec3{(1 - std::abs(at.y)) * signOf(at.x), (1 - std::abs(at.x)) * signOf(at.y), z};
+  const std::array<double, 3> point = octahedronPoint(at.x, at.y);
+  const Vec3 d{float(point[0]), float(point[1]), float(point[2])};
   return d / length(d);
 }
 

@@ -25,13 +25,15 @@ Lobe unpackLobe(const LobeUvs& uvs, const Affine& to_scene) {
 
 // Octahedral directions: Meyer and others, "On Floating-Point Normal Vectors", EGSR 2010. The octahedron's lower half is folded out around
 // the square |u| + |v| ≤ 1.
+std::array<double, 2> octahedronPlace(double x, double y, double z) {
+  const double sum = std::fabs(x) + std::fabs(y) + std::fabs(z);
+  const double u = sum > 0 ? x / sum : 0, v = sum > 0 ? y / sum : 0;
+  if (z < 0) return {std::copysign(1 - std::fabs(v), x), std::copysign(1 - std::fabs(u), y)};
+  return {u, v};
+}
+
 PackedLobe quantisedLobe(const LobeUvs& uvs, float density_max) {
-  const double x = uvs.first.x, y = uvs.first.y, z = uvs.second.x, sum = std::fabs(x) + std::fabs(y) + std::fabs(z);
-  double u = sum > 0 ? x / sum : 0, v = sum > 0 ? y / sum : 0;
-  if (z < 0) {
-    u = std::copysign(1 - std::fabs(y / sum), x);
-    v = std::copysign(1 - std::fabs(x / sum), y);
-  }
+  const auto [u, v] = octahedronPlace(uvs.first.x, uvs.first.y, uvs.second.x);
   const double share = std::clamp(double(uvs.second.y) / double(density_max), 0.0, 1.0);
   const auto step = [](double of_one) { return int16_t(std::lround(kDirectionSteps * std::clamp(of_one, -1.0, 1.0))); };
   return {step(u), step(v), uint16_t(std::lround(kDensitySteps * std::sqrt(share)))};

@@ -37,6 +37,8 @@ inline constexpr double kDirectionSteps = 32767, kDensitySteps = 65535;
 /// The nearest integers. `density_max` is at least the lobe's d, and above 0.
 PackedLobe quantisedLobe(const LobeUvs& uvs, float density_max);
 
+/// The point (u, v) of the square −1 … 1 to which the octahedron's point towards a vector is unfolded. The middle of the square is +z.
+std::array<double, 2> octahedronPlace(double x, double y, double z);
 /// The point of the octahedron that the square's point (u, v) is folded to; o is this vector, normalised. −1 ≤ u, v ≤ 1.
 std::array<double, 3> octahedronPoint(double u, double v);
 

@@ -23,7 +23,7 @@ function shearedBox(low, high, light, axis) {
 }
 
 /** @typedef {number[]} Vec3 */
-/** @typedef {{ rows: number[][], nodes: number[], axis: number }} ShadeFrame where the nodes of a grid are by which clouds shade each other */
+/** @typedef {{ rows: number[][], nodes: number[], axis: number }} ShadeFrame where the nodes of a grid are */
 
 /**
  * The frame in which a box of the world fits: rows that take a point of the world, with 1 as fourth, to coordinates of nodes.

@@ -190,6 +190,7 @@ varying vec3 cloud_view;
 
 // Writes them. A corner of the square is -1 or 1 to the right and upwards.
 export const IMPOSTOR_SQUARE = `
+#include "lobe.glsl"
 #include "impostor.glsl"
 uniform vec3 impostor_center;
 uniform float impostor_radius;
@@ -217,9 +218,9 @@ vec3 cornerInWorld(vec2 corner, mat4 to_world, vec3 eye, vec3 axis, bool has_per
 export const IMPOSTOR_PIXEL = `
 uniform highp sampler2D impostor_lobe, impostor_rest;
 uniform vec4 impostor_atlas;
+#include "lobe.glsl"
 #include "impostor.glsl"
 #include "impostor_atlas.glsl"
-#include "lobe.glsl"
 uniform float impostor_exponent, extinction, volume_gain;
 
 // The shares of the light of sun and sky, and the opacity.

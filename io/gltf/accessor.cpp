@@ -71,8 +71,8 @@ double component(const unsigned char* data, bool normalized) {
 // Calls use(T()) for the T of a component type.
 template <class Use>
 void withComponentType(int type, const Use& use) {
-  switch (type) {  // NOLINT(bugprone-branch-clone): they differ in T
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return use(int8_t());
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return use(int8_t());  // NOLINT(bugprone-branch-clone): they differ in T
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return use(uint8_t());
     case TINYGLTF_COMPONENT_TYPE_SHORT: return use(int16_t());
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return use(uint16_t());

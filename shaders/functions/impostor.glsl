@@ -1,12 +1,12 @@
 // Lobe impostors: which frames of the atlas are seen, where a ray meets them, and what their texels mean. The same as core/impostor.h and
 // preview/mesh_clouds/impostor.cpp. Places are in the impostor's own space, from the center of its ball, in radii of the ball. Textures
-// are read by whoever calls this; shaders/common/impostor_atlas.glsl does it.
+// are read by whoever calls this; shaders/common/impostor_atlas.glsl does it. Needs lobe.glsl.
 
 float octahedralSign(float x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
-// A direction as a place of an octahedron's map, -1 to 1, whose middle is +z; and back.
+// A direction as a place of an octahedron's map, -1 to 1, whose middle is +z. octahedralDirection of lobe.glsl is the way back.
 vec2 octahedralPlace(vec3 direction) {
   vec3 sizes = abs(direction);
   vec2 at = direction.xy / (sizes.x + sizes.y + sizes.z);
@@ -14,15 +14,6 @@ vec2 octahedralPlace(vec3 direction) {
     return at;
   }
   return vec2((1.0 - abs(at.y)) * octahedralSign(at.x), (1.0 - abs(at.x)) * octahedralSign(at.y));
-}
-
-vec3 octahedralDirection(vec2 at) {
-  vec2 xy = at;
-  float z = 1.0 - abs(at.x) - abs(at.y);
-  if (z < 0.0) {
-    xy = vec2((1.0 - abs(at.y)) * octahedralSign(at.x), (1.0 - abs(at.x)) * octahedralSign(at.y));
-  }
-  return normalize(vec3(xy, z));
 }
 
 // The direction to the eye from which a frame is seen; 'frame': how many frames it is from the left and from the top.

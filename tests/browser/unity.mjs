@@ -289,7 +289,7 @@ function meshOf() {
       input_second: { size: 2, values: flipV(values(`TEXCOORD_${n + 1}`)) },
     },
     indices: Array.from(valuesOf(asset, primitive.indices)),
-    constants: { _Exponent: [info.exponent], _Bias: [info.bias], _Extinction: [info.extinction],
+    constants: { _Exponent: [info.exponent], _Bias: [info.bias], _Extinction: [info.extinction], _DensityMax: [0],
       _OfVolume: [Number(info.fit_to === 'volume')] },
   };
 }
