@@ -55,6 +55,13 @@ std::vector<Function> lobeFunctions() {
       point.inputs.push_back({float(to_world.linear[0][column]), float(to_world.linear[1][column]), float(to_world.linear[2][column]), 0});
     return point;
   };
+  const auto packed = [](Draws& draw) {
+    const LobeUvs stored{{draw.between(-1, 1), draw.between(-1, 1)}, {draw.between(-1, 1), draw.between(0, 1)}};
+    const float density_max = draw.between(0.1F, 30);
+    const LobeUvs lobe = dequantisedLobe(stored, density_max);
+    return Point{{{stored.first.x, stored.first.y, stored.second.x, stored.second.y}, {density_max, 0, 0, 0}},
+                 {lobe.first.x, lobe.first.y, lobe.second.x, lobe.second.y}};
+  };
   const std::string lobe = "lobeInWorld(unpackLobe(p[0].xy, p[0].zw, 0.0), mat3(p[1].xyz, p[2].xyz, p[3].xyz))";
   const std::string both = "vec4(lobeTransmittance(p[0], p[1].xyz, p[2].xy, p[1].w), lobeThickness(p[0], p[1].xyz, p[2].xy), 0.0, 0.0)";
   return {{"lobe", "lobeTransmittance", both,
@@ -63,10 +70,13 @@ std::vector<Function> lobeFunctions() {
           {"lobe", "lobeInWorld", lobe, "lobeInWorld(unpackLobe(p[0].zw, p[0].xy, 0.0), mat3(p[1].xyz, p[2].xyz, p[3].xyz))", 3e-6, 1e-6,
            placed},
           {"lobe", "unpackLobe of flipped sets", "unpackLobe(vec2(p[0].x, 1.0 - p[0].y), vec2(p[0].z, 1.0 - p[0].w), 1.0)",
-           "unpackLobe(vec2(p[0].x, 1.0 - p[0].y), vec2(p[0].z, 1.0 - p[0].w), 0.0)", 3e-7, 0, [](Draws& draw) {
+           "unpackLobe(vec2(p[0].x, 1.0 - p[0].y), vec2(p[0].z, 1.0 - p[0].w), 0.0)", 3e-7, 0,
+           [](Draws& draw) {
              const Texel values{draw.between(-1, 1), draw.between(-1, 1), draw.between(-1, 1), draw.between(0, 3)};
              return Point{{values}, values};
-           }}};
+           }},
+          {"lobe", "decodeLobe of packed sets", "decodeLobe(p[0].xy, p[0].zw, 0.0, p[1].x)", "decodeLobe(p[0].yx, p[0].zw, 0.0, p[1].x)",
+           2e-6, 4e-6, packed}};
 }
 
 // Frames, their places and their texels.
@@ -130,32 +140,35 @@ vec4 meanOfFrames(vec3 to_eye, float views) {
   const auto lobe = [](const std::string& values) {
     return "impostorMean(2.0 * impostorLobe(" + values + ", impostorRight(p[0].xyz), p[0].xyz, p[0].w), 2.0)";
   };
-  return {{"impostor", "impostorDirection", "vec4(impostorDirection(p[0].xy, p[0].z), 0.0)",
-           "vec4(impostorDirection(p[0].xy, p[0].z + 1.0), 0.0)", 1e-6, 0, directions},
-          {"impostor",
-           "impostorCell, its three frames and impostorWeights",
-           "meanOfFrames(p[0].xyz, p[0].w)",
-           "meanOfFrames(p[0].zyx, p[0].w)",
-           2e-5,
-           0,
-           frames,
-           {},
-           prelude},
-          {"impostor", "impostorRight, impostorPlace and impostorReach", places("p[0].xyz"), places("p[0].yxz"), 4e-6, 1e-5, axes},
-          {"impostor", "impostorLobe and impostorMean", lobe("p[1].xyz"), lobe("p[1].yxz"), 2e-6, 2e-6, lobes},
-          {"impostor", "impostorInAtlas and impostorLevel",
-           "vec4(impostorInAtlas(p[0].xy, floor(p[1].xy), p[1].z, p[1].w), impostorLevel(p[0].z, p[0].w), impostorHeight(p[0].x))",
-           "vec4(impostorInAtlas(p[0].yx, floor(p[1].xy), p[1].z, p[1].w), impostorLevel(p[0].z, p[0].w), impostorHeight(p[0].x))", 2e-6,
-           2e-6, [](Draws& draw) {
-             const Vec2 at{draw.between(-0.1F, 1.1F), draw.between(-0.1F, 1.1F)};
-             const float texels = std::exp2(draw.between(-3, 8)), last = std::floor(draw.between(0, 6)), pixels = draw.between(4, 128);
-             const float views = std::floor(draw.between(2, 17)), i = draw.between(0, views), j = draw.between(0, views);
-             const auto inAtlas = [&](float a, float frame) {
-               return (std::floor(frame) + std::clamp(a, 0.5F / pixels, 1 - 0.5F / pixels)) / views;
-             };
-             return Point{{{at.x, at.y, texels, last}, {i, j, views, pixels}},
-                          {inAtlas(at.x, i), inAtlas(at.y, j), std::clamp(std::log2(texels), 0.0F, last), 1 - 2 * at.x}};
-           }}};
+  std::vector<Function> functions{
+      {"impostor", "impostorDirection", "vec4(impostorDirection(p[0].xy, p[0].z), 0.0)",
+       "vec4(impostorDirection(p[0].xy, p[0].z + 1.0), 0.0)", 1e-6, 0, directions},
+      {"impostor",
+       "impostorCell, its three frames and impostorWeights",
+       "meanOfFrames(p[0].xyz, p[0].w)",
+       "meanOfFrames(p[0].zyx, p[0].w)",
+       2e-5,
+       0,
+       frames,
+       {},
+       prelude},
+      {"impostor", "impostorRight, impostorPlace and impostorReach", places("p[0].xyz"), places("p[0].yxz"), 4e-6, 1e-5, axes},
+      {"impostor", "impostorLobe and impostorMean", lobe("p[1].xyz"), lobe("p[1].yxz"), 2e-6, 2e-6, lobes},
+      {"impostor", "impostorInAtlas and impostorLevel",
+       "vec4(impostorInAtlas(p[0].xy, floor(p[1].xy), p[1].z, p[1].w), impostorLevel(p[0].z, p[0].w), impostorHeight(p[0].x))",
+       "vec4(impostorInAtlas(p[0].yx, floor(p[1].xy), p[1].z, p[1].w), impostorLevel(p[0].z, p[0].w), impostorHeight(p[0].x))", 2e-6, 2e-6,
+       [](Draws& draw) {
+         const Vec2 at{draw.between(-0.1F, 1.1F), draw.between(-0.1F, 1.1F)};
+         const float texels = std::exp2(draw.between(-3, 8)), last = std::floor(draw.between(0, 6)), pixels = draw.between(4, 128);
+         const float views = std::floor(draw.between(2, 17)), i = draw.between(0, views), j = draw.between(0, views);
+         const auto inAtlas = [&](float a, float frame) {
+           return (std::floor(frame) + std::clamp(a, 0.5F / pixels, 1 - 0.5F / pixels)) / views;
+         };
+         return Point{{{at.x, at.y, texels, last}, {i, j, views, pixels}},
+                      {inAtlas(at.x, i), inAtlas(at.y, j), std::clamp(std::log2(texels), 0.0F, last), 1 - 2 * at.x}};
+       }}};
+  for (Function& f : functions) f.uses = {"lobe"};
+  return functions;
 }
 
 // Sixteen coefficients of a mesh that is turned and stretched.

@@ -7,7 +7,7 @@ import { Matrix } from '@babylonjs/core/Maths/math.vector.js';
 import '@babylonjs/core/Meshes/thinInstanceMesh.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import { SkyMaterial, createCloudSky, impostorMaterialOf } from 'cloudbake-materials/babylon';
-import { colorOf, engineOf, lookAt } from './babylon_page.mjs';
+import { colorOf, engineOf, lookAt, ready } from './babylon_page.mjs';
 
 export async function load(file, { rightHanded = true } = {}) {
   const scene = new Scene(engineOf([300, 200]));
@@ -56,7 +56,7 @@ export async function draw(subject, view) {
     { type: Constants.TEXTURETYPE_FLOAT, generateMipMaps: false, samplingMode: Constants.TEXTURE_NEAREST_SAMPLINGMODE });
   eye.outputRenderTarget = target;
   scene.render();
-  await scene.whenReadyAsync();
+  await ready(scene);
   scene.render();
   const read = await target.readPixels();
   eye.outputRenderTarget = null;

@@ -18,7 +18,7 @@ import { Scene } from '@babylonjs/core/scene.js';
 import { CloudLevels, CloudMaterial, CloudShadow } from 'cloudbake-materials/babylon';
 import { PaintedClouds } from 'cloudbake-materials/babylon/painted';
 import { changesOf } from './changes.mjs';
-import { canvasOf, colorOf, draw, engineOf } from './babylon_page.mjs';
+import { canvasOf, colorOf, draw, engineOf, nextFrame, ready } from './babylon_page.mjs';
 
 export { describe, draw, load } from './babylon_page.mjs';
 
@@ -56,7 +56,7 @@ async function valuesOf(scene, eye, [width, height]) {
     { type: Constants.TEXTURETYPE_FLOAT, generateMipMaps: false, samplingMode: Constants.TEXTURE_NEAREST_SAMPLINGMODE });
   eye.outputRenderTarget = target;
   scene.render();  // makes what the target needs
-  await scene.whenReadyAsync();
+  await ready(scene);
   scene.render();
   const rows = await target.readPixels();
   eye.outputRenderTarget = null;
@@ -119,10 +119,10 @@ export async function drawLevels({ files, size, at, distances, longest, switchBa
   for (const away of distances) {
     eye.position.set(at[0] + 0.3 * away, at[1] + 0.2 * away, at[2] + away);
     eye.setTarget(new Vector3(...at));
-    await scene.whenReadyAsync();
+    await ready(scene);
     do {
       scene.render();
-      await new Promise(done => requestAnimationFrame(done));
+      await nextFrame();
     } while (look && !look.isReady());
     scene.render();
     pictures.push(canvasOf(size));

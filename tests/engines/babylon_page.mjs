@@ -14,16 +14,22 @@ import { CloudMaterial, SkyMaterial, cloudMaterialOf, createCloudSky } from 'clo
 
 export const colorOf = array => new Color3(...array);
 
-let engine;
+let engine, broken;
 export function engineOf([width, height]) {
   if (!engine) {
     const canvas = document.createElement('canvas');
     document.body.append(canvas);
     engine = new Engine(canvas, false, { preserveDrawingBuffer: true });
+    broken = new Promise((_, fail) => engine.onEffectErrorObservable.addOnce(({ errors }) => fail(new Error(errors))));
+    broken.catch(() => {});  // unless somebody waits
   }
   engine.setSize(width, height);
   return engine;
 }
+
+// Babylon.js compiles for ever what does not compile: these throw instead.
+export const ready = scene => Promise.race([scene.whenReadyAsync(), broken]);
+export const nextFrame = () => Promise.race([new Promise(done => requestAnimationFrame(done)), broken]);
 
 export async function load(file, { rightHanded = true } = {}) {
   const scene = new Scene(engineOf([300, 200]));
@@ -99,7 +105,7 @@ export async function draw(subject, view) {
   eye.outputRenderTarget = target;
   eye.unfreezeProjectionMatrix();
   scene.render();  // makes what the target needs
-  await scene.whenReadyAsync();
+  await ready(scene);
   const projection = eye.getProjectionMatrix(true).clone();
   for (const [i, [x, y]] of places.entries()) {
     if (subject.material) subject.material.ditherShift = i / places.length;
@@ -119,7 +125,7 @@ export async function drawToCanvas(subject, view, tone) {
   const eye = prepare(subject, view), { scene } = subject;
   for (const material of [subject.material, subject.sky]) material.tone = tone;
   eye.unfreezeProjectionMatrix();
-  await scene.whenReadyAsync();
+  await ready(scene);
   scene.render();
   return canvasOf(view.size);
 }

@@ -7,7 +7,7 @@ import { CreateBox } from '@babylonjs/core/Meshes/Builders/boxBuilder.js';
 import { CreateSphere } from '@babylonjs/core/Meshes/Builders/sphereBuilder.js';
 import { PaintedClouds } from 'cloudbake-materials/babylon/painted';
 import { paintedDefaults } from '/node_modules/cloudbake-materials/painted_chain.js';
-import { canvasOf, colorOf, inScene, prepare } from './babylon_page.mjs';
+import { canvasOf, colorOf, inScene, nextFrame, prepare, ready } from './babylon_page.mjs';
 import { naiveOf } from './naive.mjs';
 
 const right = ShaderStore.ShadersStore.cloudbakeCompositePixelShader;
@@ -22,10 +22,10 @@ function paintedFor({ scene }, eye, { colors }, { exact = true, ...settings } = 
 
 // Renders until everything is compiled, and once more.
 async function drawReady(scene, look) {
-  await scene.whenReadyAsync();
+  await ready(scene);
   do {
     scene.render();
-    await new Promise(done => requestAnimationFrame(done));
+    await nextFrame();
   } while (!look.isReady());
 }
 
