@@ -35,12 +35,15 @@ def read_asset(path):
         raise BakeError(f"'{path}' cannot be read: {error}") from None
     info = glb.asset_info(document)
     if info is None:
-        raise BakeError(f"'{path}' is not a baked asset: it has no asset.extras.cloudbake of layout 'lobe-uv' 1")
+        raise BakeError(f"'{path}' is not a baked asset: it has no asset.extras.cloudbake of layout 'lobe-uv' or 'lobe-packed', "
+                        "version 1")
     for name in ("exponent", "bias", "extinction", *(["density_max"] if info["layout"] == glb.PACKED else [])):
         value = info.get(name)
         if not isinstance(value, (int, float)) or not abs(value) <= numpy.finfo(numpy.float32).max:
             raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.{name} is {value!r}, not a finite number in 32 bits: bake "
                             f"it again")
+    if info["layout"] == glb.PACKED and not info["density_max"] > 0:
+        raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.density_max is {info['density_max']!r}, not above 0: bake it again")
     return document, binary, info
 
 
@@ -48,8 +51,9 @@ NUMBER = "cloudbake_number"  # in extras: of a node or a material in the file
 
 
 def import_asset(context, path, sun):
-    """Imports the file and gives its clouds their material. Returns the clouds."""
+    """Imports the file and gives its clouds their material. Returns words for the user."""
     document, binary, info = read_asset(path)
+    is_packed = info["layout"] == glb.PACKED
     prepare_numpy()
     kind, before = {"node": bpy.data.objects, "material": bpy.data.materials}, (set(bpy.data.objects), set(bpy.data.materials))
     facts = document["asset"]["extras"].get(kept.KEY)
@@ -65,12 +69,11 @@ def import_asset(context, path, sun):
             glb.write_glb(marked, document, binary)
             import_file(marked)
     made, materials = ([block for block in blocks if block not in old] for blocks, old in zip(kind.values(), before))
-    clouds = [thing for thing in made if thing.type == "MESH" and nodes.name_maps(thing.data, info["uv_sets"][0])]
+    density_max = info["density_max"] if is_packed else 0
+    clouds = [thing for thing in made if thing.type == "MESH" and nodes.take_maps(thing.data, info["uv_sets"][0], density_max)]
     if not clouds:
         raise BakeError(f"no object of '{path}' has the UV maps of the lobes")
-    if info["layout"] == glb.PACKED:
-        for mesh in {thing.data.name: thing.data for thing in clouds}.values():
-            unpack(mesh, info["density_max"])
+    if is_packed:
         info = {key: value for key, value in info.items() if key not in ("density_max", "certificate", "seal")} | {"layout": "lobe-uv"}
     if facts is not None:
         restore(context, document, facts, made, materials)
@@ -83,20 +86,7 @@ def import_asset(context, path, sun):
     for thing in clouds:
         for material in nodes.set_up(thing, f"Cloudbake {pathlib.Path(path).stem}", bake.constants_of(info)):
             nodes.follow_sun(material, sun)
-    return clouds
-
-
-def unpack(mesh, density_max):
-    """Gives the UV maps of the lobes the four floats that a packed asset stands for. Blender has 1 - v."""
-    layers = [mesh.uv_layers[name].data for name in nodes.MAPS]
-    sets = []
-    for layer in layers:
-        values = numpy.empty(2 * len(layer), numpy.float32)
-        layer.foreach_get("uv", values)
-        sets.append(values.reshape(-1, 2).astype(numpy.float64) * (1, -1) + (0, 1))
-    first, second = sets
-    for layer, values in zip(layers, glb.unpacked_lobes(first, second, density_max)):
-        layer.foreach_set("uv", (values * (1, -1) + (0, 1)).astype(numpy.float32).ravel())
+    return [f"'{path}' is packed: its lobes are four floats in Blender, and an export writes them as such"] if is_packed else []
 
 
 def import_file(path):

@@ -89,12 +89,3 @@ def asset_info(document):
 
 
 PACKED = "lobe-packed"  # docs/asset_format.md
-
-
-def unpacked_lobes(first, second, density_max):
-    """The sets of the layout lobe-uv from those of a packed asset, both #V × 2 as glTF has them."""
-    height = 1 - numpy.abs(first).sum(axis=1)
-    fold = numpy.maximum(-height, 0)[:, None]
-    direction = numpy.column_stack([first - numpy.where(first < 0, -fold, fold), height])
-    direction /= numpy.linalg.norm(direction, axis=1, keepdims=True)
-    return direction[:, :2], numpy.column_stack([direction[:, 2], density_max * second[:, 1] ** 2])

@@ -3,6 +3,7 @@
 import json
 
 import bpy
+import numpy
 
 GROUP = "Cloudbake lobe"
 GROUP_VERSION = 2
@@ -406,14 +407,44 @@ def read_constants(tree, group, inputs):
             tree.links.new(source, socket)
 
 
-def name_maps(mesh, first):
-    """Gives the UV maps that a glTF importer made of the sets `first` and `first` + 1 the names that the group reads."""
+# ---- the UV maps of an import ------------------------------------------------------------------------------------------------------------
+
+
+def take_maps(mesh, first, density_max):
+    """Makes the UV maps of the lobes of those that a glTF importer made of the sets `first` and `first` + 1. density_max: that of a packed
+    asset, else 0. Maps that have the names are the maps of the lobes already. Returns False if the mesh lacks the sets."""
     if len(mesh.uv_layers) < first + 2:
         return False
+    layers = [mesh.uv_layers[first + number] for number in range(len(MAPS))]
+    if density_max > 0 and [layer.name for layer in layers] != list(MAPS):
+        if mesh.is_editmode:
+            raise RuntimeError(f"the lobes of '{mesh.name}' are packed and cannot be read in Edit Mode: leave it first")
+        unpack(layers, density_max)
     for number, name in enumerate(MAPS):
         if mesh.uv_layers[first + number].name != name:
             mesh.uv_layers[first + number].name = name
     return True
+
+
+def unpack(layers, density_max):
+    """Gives the UV maps of a packed asset the four floats that its integers stand for. Nodes cannot do so: they get numbers that are blended
+    across a triangle, and the octahedron's numbers of neighbours may be far apart. Importers of Blender store 1 - v."""
+    stored = []
+    for layer in layers:
+        values = numpy.empty(2 * len(layer.data), numpy.float32)
+        layer.data.foreach_get("uv", values)
+        stored.append(values.reshape(-1, 2).astype(numpy.float64) * (1, -1) + (0, 1))
+    for layer, values in zip(layers, unpacked_lobes(*stored, density_max)):
+        layer.data.foreach_set("uv", (values * (1, -1) + (0, 1)).astype(numpy.float32).ravel())
+
+
+def unpacked_lobes(first, second, density_max):
+    """The sets of the layout lobe-uv from those of a packed asset, both #V × 2 as glTF has them (docs/asset_format.md)."""
+    height = 1 - numpy.abs(first).sum(axis=1)
+    fold = numpy.maximum(-height, 0)[:, None]
+    direction = numpy.column_stack([first - numpy.where(first < 0, -fold, fold), height])
+    direction /= numpy.linalg.norm(direction, axis=1, keepdims=True)
+    return direction[:, :2], numpy.column_stack([direction[:, 2], density_max * second[:, 1] ** 2])
 
 
 # ---- the sun ----------------------------------------------------------------------------------------------------------------------------

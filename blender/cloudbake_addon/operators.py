@@ -269,7 +269,8 @@ class CLOUDBAKE_OT_import(Reporting, bpy.types.Operator, ImportHelper):
         for path in paths:
             exchange.read_asset(path)  # all or none
         for path in paths:
-            exchange.import_asset(context, path, chosen_sun(context))
+            for line in exchange.import_asset(context, path, chosen_sun(context)):
+                self.report({"INFO"}, line)
         return {"FINISHED"}
 
 

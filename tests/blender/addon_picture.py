@@ -24,6 +24,7 @@ def import_clouds(addons, asset):
     if addons.endswith(".py"):
         bpy.ops.import_scene.gltf(filepath=asset)
         runpy.run_path(addons)
+        runpy.run_path(addons)  # the second run changes nothing
         return next(thing for thing in bpy.context.scene.objects if thing.type == "MESH")
     sys.path.insert(0, addons)
     bpy.ops.preferences.addon_enable(module="cloudbake_addon")

@@ -743,6 +743,42 @@ def import_again(found):
     export(found, "import_again_again", [again])
 
 
+def transmittance(lobes, lights, asset):
+    """T of vectors o·d, for each light."""
+    d = numpy.linalg.norm(lobes, axis=1)
+    half_cosine = numpy.maximum(lobes / d[:, None] @ lights.T * 0.5 + 0.5, 0)
+    thickness = half_cosine ** asset["exponent"] * d[:, None] + asset["bias"]
+    return numpy.exp(-asset["extinction"] * numpy.maximum(thickness, 0))
+
+
+@scenario
+def import_of_packed_assets(found):
+    """They have the lobes of the file, the light of the same cloud with four floats, and can be written again."""
+    thing = lump("packed", 29, 3, rotation=(0.4, 0.2, 0.1), scale=(1, 2, 1.5))
+    select(thing)
+    bpy.ops.export_scene.gltf(filepath=str(FOLDER / "packed.glb"), use_selection=True)
+    bpy.data.objects.remove(thing)
+    clouds, files = {}, {}
+    for name, options in {"floats": [], "list": ["--pack", "8"], "strip": ["--pack", "8", "--pack-as", "strip"]}.items():
+        files[name] = FOLDER / f"packed.{name}.glb"
+        subprocess.run([PROGRAM, "bake", FOLDER / "packed.glb", "-o", files[name], "-q", *options], check=True)
+        assert bpy.ops.cloudbake.import_asset(filepath=str(files[name])) == {"FINISHED"}
+        clouds[name] = bpy.context.selected_objects[0]
+    bpy.context.view_layer.update()
+    asset, turns = json.loads(clouds["list"].data["cloudbake"])["asset"], numpy.random.default_rng(1).normal(size=(64, 3))
+    assert asset["layout"] == "lobe-uv" and not {"density_max", "certificate", "seal"} & set(asset)
+    lights, plain = turns / numpy.linalg.norm(turns, axis=1)[:, None], world_lobes(clouds["floats"])
+    assert 0.3 < (plain[:, 2] < 0).mean() < 0.7, "too few lobes on one half of the octahedron"
+    for name in ("list", "strip"):
+        far = numpy.abs(transmittance(world_lobes(clouds[name]), lights, asset) - transmittance(plain, lights, asset)).max()
+        assert far < 1 / 255, f"{name}: T differs by {far}"
+        assert numpy.abs(world_triangles(clouds[name])[0] - world_triangles(clouds["floats"])[0]).max() < 1e-3, f"{name}: other places"
+    found.file(files["list"], [clouds["list"]])
+    path = export(found, "import_of_packed_assets", [clouds["list"]])
+    written = read_glb(path)[0]
+    assert written["asset"]["extras"]["cloudbake"]["layout"] == "lobe-uv" and "KHR_mesh_quantization" not in str(written)
+
+
 @scenario
 def imports_that_are_refused(found):
     (FOLDER / "plain.glb").write_bytes(b"glTF" + bytes(30))
@@ -761,6 +797,10 @@ def imports_that_are_refused(found):
         assert exponent + b"," in data
         (FOLDER / "wrong.glb").write_bytes(glb_with(data, exponent, b'"exponent": ' + wrong))
         refused("asset.extras.cloudbake.exponent is", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "wrong.glb"))
+    packed = glb_with(path.read_bytes(), b'"lobe-uv"', b'"lobe-packed"')
+    for wrong in (b"0", b"-2.5", b"null"):
+        (FOLDER / "wrong.glb").write_bytes(glb_with(packed, exponent, b'"density_max": ' + wrong + b", " + exponent))
+        refused("asset.extras.cloudbake.density_max is", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "wrong.glb"))
 
 
 def bent_rig(thing):

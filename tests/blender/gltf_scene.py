@@ -142,13 +142,28 @@ def morphed(gltf, primitive, weights):
     return points
 
 
+def lobe_floats(gltf, attributes):
+    """The rows (o, d) of a primitive, in the mesh's own space. In packed assets the lower half of the octahedron lies outside the square
+    |u| + |v| = 1, mirrored at its sides."""
+    info = gltf.json["asset"]["extras"]["cloudbake"]
+    first, second = (gltf.floats(attributes[f"TEXCOORD_{n}"]) for n in info["uv_sets"])
+    if info["layout"] != "lobe-packed":
+        return np.column_stack([first, second])
+    u, v = first.T
+    is_below = abs(u) + abs(v) > 1
+    x = np.where(is_below, np.copysign(1 - abs(v), u), u)
+    y = np.where(is_below, np.copysign(1 - abs(u), v), v)
+    o = np.column_stack([x, y, 1 - abs(u) - abs(v)])
+    return np.column_stack([o / np.linalg.norm(o, axis=1)[:, None], info["density_max"] * second[:, 1] ** 2])
+
+
 def stored_lobes(gltf, attributes):
     """o·d in the mesh's own space; None if the file or the primitive has no lobes, as in a node that is left out."""
     info = gltf.json["asset"].get("extras", {}).get("cloudbake")
     if info is None or f"TEXCOORD_{info['uv_sets'][0]}" not in attributes:
         return None
-    first, second = (gltf.floats(attributes[f"TEXCOORD_{n}"]) for n in info["uv_sets"])
-    return np.column_stack([first, second[:, 0]]) * second[:, 1:]
+    lobes = lobe_floats(gltf, attributes)
+    return lobes[:, :3] * lobes[:, 3:]
 
 
 def triangles_of(gltf, primitive, count):

@@ -3,7 +3,7 @@ docs/asset_format.md and the place of everything in Blender's scene. It shares n
 
 import numpy as np
 
-from gltf_scene import Gltf
+from gltf_scene import Gltf, lobe_floats
 
 TO_BLENDER = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # from glTF's axes
 
@@ -16,12 +16,11 @@ class Asset:
         node = next(node for node in gltf.json["nodes"] if "mesh" in node)
         primitive = gltf.json["meshes"][node["mesh"]]["primitives"][0]
         attributes = primitive["attributes"]
-        first, second = (gltf.floats(attributes[f"TEXCOORD_{n}"]) for n in gltf.json["asset"]["extras"]["cloudbake"]["uv_sets"])
         matrix = np.array(place["object"])
         self.linear = matrix[:3, :3]
         self.points = gltf.floats(attributes["POSITION"]) @ (self.linear @ TO_BLENDER).T + matrix[:3, 3]
         self.normals = gltf.floats(attributes["NORMAL"]) @ TO_BLENDER.T @ np.linalg.inv(self.linear)
-        self.lobes = np.column_stack([first, second])
+        self.lobes = lobe_floats(gltf, attributes)
         self.triangles = gltf.stored(primitive["indices"])[:, 0].astype(int).reshape(-1, 3)
 
 
