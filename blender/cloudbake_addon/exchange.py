@@ -43,7 +43,8 @@ def read_asset(path):
             raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.{name} is {value!r}, not a finite number in 32 bits: bake "
                             f"it again")
     if info["layout"] == glb.PACKED and not info["density_max"] > 0:
-        raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.density_max is {info['density_max']!r}, not above 0: bake it again")
+        raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.density_max is {info['density_max']!r}, not above 0: bake it "
+                        f"again")
     return document, binary, info
 
 

@@ -407,7 +407,7 @@ def read_constants(tree, group, inputs):
             tree.links.new(source, socket)
 
 
-# ---- the UV maps of an import ------------------------------------------------------------------------------------------------------------
+# ---- the UV maps of an import -----------------------------------------------------------------------------------------------------------
 
 
 def take_maps(mesh, first, density_max):
@@ -427,14 +427,14 @@ def take_maps(mesh, first, density_max):
 
 
 def unpack(layers, density_max):
-    """Gives the UV maps of a packed asset the four floats that its integers stand for. Nodes cannot do so: they get numbers that are blended
-    across a triangle, and the octahedron's numbers of neighbours may be far apart. Importers of Blender store 1 - v."""
+    """Gives the UV maps of a packed asset the four floats that its integers stand for. Nodes cannot do so: they get numbers that are
+    blended across a triangle, and the octahedron's numbers of neighbours may be far apart. Importers of Blender store 1 - v."""
     stored = []
     for layer in layers:
         values = numpy.empty(2 * len(layer.data), numpy.float32)
         layer.data.foreach_get("uv", values)
         stored.append(values.reshape(-1, 2).astype(numpy.float64) * (1, -1) + (0, 1))
-    for layer, values in zip(layers, unpacked_lobes(*stored, density_max)):
+    for layer, values in zip(layers, unpacked_lobes(stored[0], stored[1], density_max)):
         layer.data.foreach_set("uv", (values * (1, -1) + (0, 1)).astype(numpy.float32).ravel())
 
 

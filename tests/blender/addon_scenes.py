@@ -759,7 +759,8 @@ def import_of_packed_assets(found):
     bpy.ops.export_scene.gltf(filepath=str(FOLDER / "packed.glb"), use_selection=True)
     bpy.data.objects.remove(thing)
     clouds, files = {}, {}
-    for name, options in {"floats": [], "list": ["--pack", "8"], "strip": ["--pack", "8", "--pack-as", "strip"]}.items():
+    packings: dict[str, list[str]] = {"floats": [], "list": ["--pack", "8"], "strip": ["--pack", "8", "--pack-as", "strip"]}
+    for name, options in packings.items():
         files[name] = FOLDER / f"packed.{name}.glb"
         subprocess.run([PROGRAM, "bake", FOLDER / "packed.glb", "-o", files[name], "-q", *options], check=True)
         assert bpy.ops.cloudbake.import_asset(filepath=str(files[name])) == {"FINISHED"}
