@@ -67,7 +67,7 @@ struct CommandSpec {
 
 /// Whether -o must be given; `view` may serve its page instead.
 inline bool requiresOutput(const CommandSpec& command) {
-  return std::string_view(command.output) == "FILE" || command.bit == kShader || command.bit == kImpostor;
+  return std::string_view(command.output) == "FILE" || command.bit == kShader || command.bit == kImpostor || command.bit == kPlan;
 }
 
 inline constexpr const char* kQuietHelp = "print warnings and errors only";
@@ -97,6 +97,7 @@ ExitCode runView(const CommandLine& line);
 ExitCode runShader(const CommandLine& line);
 ExitCode runShadow(const CommandLine& line);
 ExitCode runImpostor(const CommandLine& line);
+ExitCode runPlan(const CommandLine& line);
 ExitCode runCheck(const CommandLine& line);
 ExitCode runMeasure(const CommandLine& line);
 ExitCode runBatch(const CommandLine& line);

@@ -73,6 +73,11 @@ const CommandSpec kCommands[] = {
      "  cloudbake impostor cloud.glb --of mesh --half-lambert 0.3 -o far",
      "DIR", runImpostor, "folder to write the files to", "",
      "impostor.glb impostor_lobe.png impostor_rest.png impostor_six_way_1.png impostor_six_way_2.png"},
+    {kPlan, "plan", "SCENE.toml", "scene to plan for",
+     "choose how the clouds of a scene are drawn at each distance, at the least cost, and write the assets for it",
+     "Examples:\n  cloudbake plan sky.toml -o planned\n  cloudbake plan sky.toml --hours 7,12,17 --region -40,2,-40:40,6,40 -o planned\n"
+     "  cloudbake plan sky.toml --budget change=2,vertices=100000 --path 0,2,60:0,2,-60 -o planned",
+     "DIR", runPlan, "folder to write the assets and scene.toml to", "", "scene.toml"},
     {kCheck, "check", "ASSET.glb", "baked asset to check",
      "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"

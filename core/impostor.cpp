@@ -33,7 +33,9 @@ BakedMesh boxWithImpostor(Impostor impostor) {
   mesh.info.lobe = "fit";
   mesh.info.shape = {impostor.info.exponent, 0};
   mesh.info.extinction = impostor.info.extinction;
-  mesh.info.input_hash = impostor.info.input_hash;
+  mesh.info.input_hash = impostor.info.level > 0 ? impostor.info.level_of : impostor.info.input_hash;
+  mesh.info.level = impostor.info.level;
+  mesh.info.switch_pixels = impostor.info.switch_pixels;
   if (impostor.info.gains) mesh.info.volume.emplace();
   mesh.impostor = std::make_shared<const Impostor>(std::move(impostor));
   return mesh;

@@ -31,6 +31,9 @@ struct ImpostorInfo {
   float thickest = 0;      ///< d of the value 1
   bool gains = false;      ///< the sun's term is that of a fit to a volume, which the painted look brightens
   std::string input_hash;  ///< XXH3-128 of the asset's bytes, hexadecimal
+  int level = 0;           ///< of an impostor that is a level of detail of an asset: as in AssetInfo, also the next two
+  int switch_pixels = 0;
+  std::string level_of;  ///< input_hash of that asset
 };
 
 /// What a texel has beside its opacity and depth. Light from l shows lit · exp(−σ max(0, l·o/2 + ½)^k d): the lobe formula with

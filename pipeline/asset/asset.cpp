@@ -126,16 +126,21 @@ BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const
   return baked;
 }
 
-BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
-  WholeBake whole = settings.mesh.separate ? WholeBake{bakeSeparately(cloud, settings, parameters, report, watch), {}, {}}
-                                           : bakeWhole(cloud, settings, parameters, report, watch);
-  BakedAsset asset{std::move(whole.lobes), {}, std::move(whole.lattice), {}};
+std::vector<std::vector<Lobe>> lobesPerPart(const Sculpt& sculpt, std::span<const Lobe> lobes) {
   std::vector<std::vector<Lobe>> per_part;
-  for (auto first = asset.lobes.begin(); const SculptPart& part : cloud.sculpt.parts) {
+  for (auto first = lobes.begin(); const SculptPart& part : sculpt.parts) {
     const auto end = first + ptrdiff_t(part.positions.size());
     per_part.emplace_back(first, end);
     first = end;
   }
+  return per_part;
+}
+
+BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
+  WholeBake whole = settings.mesh.separate ? WholeBake{bakeSeparately(cloud, settings, parameters, report, watch), {}, {}}
+                                           : bakeWhole(cloud, settings, parameters, report, watch);
+  BakedAsset asset{std::move(whole.lobes), {}, std::move(whole.lattice), {}};
+  const std::vector<std::vector<Lobe>> per_part = lobesPerPart(cloud.sculpt, asset.lobes);
   const auto encode = [&] {
     report.info.first_uv_set = chooseUvSet(cloud.sculpt, settings.output.gltf);
     std::string glb = encodeGlb(cloud.sculpt, per_part, report.info, settings.output.gltf, report.warnings, whole.harmonics);

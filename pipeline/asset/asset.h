@@ -1,6 +1,7 @@
 // Bakes a cloud, encodes its asset, and records every step in a report.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ IntegrationField fieldOfCloud(const Cloud& cloud, const Settings& settings, cons
 /// Calls bakeLobes and records the result.
 BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                         BakeReport& report, Stopwatch& watch);
+
+/// The lobes of all vertices as encodeGlb takes them, a list per part.
+std::vector<std::vector<Lobe>> lobesPerPart(const Sculpt& sculpt, std::span<const Lobe> lobes);
 
 /// A baked cloud as the bytes of a GLB.
 struct BakedAsset {

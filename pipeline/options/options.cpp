@@ -41,6 +41,61 @@ void setLevels(S& settings, O option, V value) {
   if (levels.size() > kMostLevels) refuseValue(option, value, "a list of at most " + std::to_string(kMostLevels) + " sizes");
 }
 
+// "change=1,vertices=200000".
+void setBudget(S& settings, O option, V value) {
+  PlanSettings& plan = settings.plan;
+  for (const std::string& one : readList(value)) {
+    const size_t equals = one.find('=');
+    if (equals == std::string::npos) refuseValue(option, value, "a list such as change=2,vertices=200000,bytes=8000000,draws=40");
+    const std::string key = one.substr(0, equals), number = one.substr(equals + 1);
+    if (key == "change")
+      plan.change = readNumber<double>(option, number, 0.1, 255);
+    else if (key == "vertices")
+      plan.vertices = readNumber<double>(option, number, 1, kHuge);
+    else if (key == "bytes")
+      plan.bytes = readNumber<double>(option, number, 1, kHuge);
+    else if (key == "draws")
+      plan.draws = readNumber<double>(option, number, 1, kHuge);
+    else
+      refuseValue(option, value, "a list of change, vertices, bytes and draws, each with = and a number");
+  }
+}
+
+// "6,9,12".
+void setHours(S& settings, O option, V value) {
+  settings.plan.hours.clear();
+  for (const std::string& hour : readList(value)) settings.plan.hours.push_back(readNumber<double>(option, hour, 0, 24));
+}
+
+// "X,Y,Z:X,Y,Z:…".
+std::vector<Vec3> readPlaces(O option, V value, const char* wanted) {
+  std::vector<Vec3> places;
+  for (std::string rest = value; !rest.empty();) {
+    const size_t end = std::min(rest.find(':'), rest.size());
+    const std::vector<std::string> numbers = readList(rest.substr(0, end));
+    if (numbers.size() != 3) refuseValue(option, value, wanted);
+    Vec3 place;
+    for (size_t axis = 0; axis < 3; ++axis)
+      (axis == 0 ? place.x : axis == 1 ? place.y : place.z) = readNumber<float>(option, numbers[axis], -1e9F, 1e9F);
+    places.push_back(place);
+    rest.erase(0, end + 1);
+  }
+  return places;
+}
+void setPath(S& settings, O option, V value) {
+  constexpr const char* kWanted = "two or more places as X,Y,Z, joined by colons";
+  settings.plan.path = readPlaces(option, value, kWanted);
+  if (settings.plan.path.size() < 2) refuseValue(option, value, kWanted);
+}
+void setRegion(S& settings, O option, V value) {
+  constexpr const char* kWanted = "the low and the high corner of a box, X,Y,Z:X,Y,Z";
+  const std::vector<Vec3> corners = readPlaces(option, value, kWanted);
+  if (corners.size() != 2) refuseValue(option, value, kWanted);
+  const Vec3 low = corners[0], high = corners[1];
+  if (low.x > high.x || low.y > high.y || low.z > high.z) refuseValue(option, value, kWanted);
+  settings.plan.region.emplace(low, high);
+}
+
 // Any of "orient,fill,remesh".
 void setRepair(S& settings, O option, V value) {
   for (const std::string& cure : readList(value)) {
@@ -221,7 +276,8 @@ constexpr const char *kOfRays = " needs --method rays", *kOfComparison = " needs
 
 // `view` bakes what it watches.
 constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
-                   kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck | kShadow | kImpostor, kAssets = kGrow | kBake | kBatch;
+                   kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck | kShadow | kImpostor | kPlan,
+                   kAssets = kGrow | kBake | kBatch;
 constexpr unsigned kFromSurface = kAnyInput & ~kFromVolume, kFromGrowth = kFromRules | kFromSpheres;
 
 constexpr const char *kGeneral = "Options", *kOfBake = "Bake", *kOfLobe = "Lobes", *kOfMesh = "Mesh", *kOfInput = "Input",
@@ -924,6 +980,46 @@ const Option kOptions[] = {
      .commands = kImpostor,
      .common = kImpostor,
      .help = "also write six-way light maps of the same views, in Unity's layout"},
+    {.name = "budget",
+     .unit = "LIST",
+     .value = {setBudget, {.shape = "KEY=X,…", .examples = "change=1 change=2,vertices=200000,bytes=8000000,draws=40"}},
+     .group = kOfPicture,
+     .commands = kPlan,
+     .common = kPlan,
+     .help = "what pictures may change by, in 1/255 (change), and what they may cost (vertices, bytes, draws), such as "
+             "change=2,vertices=200000",
+     .fallback = "change=2"},
+    {.name = "hours",
+     .unit = "LIST",
+     .value = {setHours, {.shape = "X,…", .examples = "6,9,12 15"}},
+     .group = kOfPicture,
+     .commands = kPlan,
+     .common = kPlan,
+     .help = "hours of day that the plan is for, such as 7,12,17; the sun rises at 6 and is highest, as the scene says, at 12",
+     .fallback = "the scene's sun"},
+    {.name = "path",
+     .unit = "PLACES",
+     .value = {setPath, {.shape = "X,X,X:X,X,X", .examples = "0,2,30:0,2,-30 1,2,3:4,5,6"}},
+     .group = kOfPicture,
+     .commands = kPlan,
+     .common = kPlan,
+     .help = "places that the camera moves along, X,Y,Z:X,Y,Z and more; it looks to all sides",
+     .fallback = "the scene's camera",
+     .rules = {{{[](const S& s) { return s.plan.region.has_value(); }, " and --region both place the camera: give one of the two"}}}},
+    {.name = "region",
+     .unit = "BOX",
+     .value = {setRegion, {.shape = "X,X,X:X,X,X", .examples = "-30,1,-30:30,5,30 0,0,0:4,5,6"}},
+     .group = kOfPicture,
+     .commands = kPlan,
+     .common = kPlan,
+     .help = "box that the camera may be anywhere in, by its low and its high corner, X,Y,Z:X,Y,Z; it looks to all sides",
+     .fallback = "the scene's camera"},
+    {.name = "measure",
+     .value = flagAt<&S::plan, &PlanSettings::measure>(),
+     .group = kOfPicture,
+     .commands = kPlan,
+     .common = kPlan,
+     .help = "draw and compare all pictures of the plan, not only some of them"},
     {.name = "camera",
      .unit = "AZ,EL",
      .value = anglesAt<&P::camera_azimuth_degrees, &P::camera_elevation_degrees>(),
@@ -1254,7 +1350,7 @@ const Option kOptions[] = {
     {.name = "force",
      .value = flagAt<kRun, &RunSettings::force>(),
      .group = kGeneral,
-     .commands = kGrow | kBake | kPreview | kMeasure | kShader | kShadow | kImpostor | kBatch,
+     .commands = kGrow | kBake | kPreview | kMeasure | kShader | kShadow | kImpostor | kPlan | kBatch,
      .common = kBatch | kShader,
      .bits = kOfRun | kOfOutputFiles | kNotOnPage,
      .help = "also replace files of other programs where cloudbake makes the names; batch also bakes what is up to date"},

@@ -25,7 +25,8 @@ enum Command : unsigned {
   kView = 64,
   kShader = 128,
   kShadow = 256,
-  kImpostor = 512
+  kImpostor = 512,
+  kPlan = 1024
 };
 
 /// Where an option is offered, as bits.

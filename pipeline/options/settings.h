@@ -188,6 +188,16 @@ struct ImpostorSettings {
   bool measure = false;  ///< compares pictures
 };
 
+/// What `plan` plans for.
+struct PlanSettings {
+  double change = 2;                             ///< that pictures may have: rms of the 8-bit values over pixels that show clouds
+  std::optional<double> vertices, bytes, draws;  ///< limits of cost
+  std::vector<double> hours;                     ///< of day; empty: the scene's own sun
+  std::vector<Vec3> path;                        ///< of the camera, which looks to all sides
+  std::optional<std::pair<Vec3, Vec3>> region;   ///< the low and the high corner of the box that the camera is in
+  bool measure = false;                          ///< draws and compares all pictures
+};
+
 /// The largest errors against exact chords that an asset may have.
 struct ErrorBounds {
   std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
@@ -248,6 +258,7 @@ struct Settings {
   PictureSettings picture;
   ShadowPictureSettings shadow;
   ImpostorSettings impostor;
+  PlanSettings plan;
   std::optional<std::filesystem::path> scene;  ///< which a bake or a kit is for, or which is drawn
   JudgeSettings judge;
   BatchSettings batch;

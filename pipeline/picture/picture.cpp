@@ -33,6 +33,10 @@
 
 namespace cloudbake {
 
+std::string keyOf(const SceneCloud& cloud) {
+  return !cloud.file.empty() ? cloud.file.string() : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
+}
+
 namespace {
 
 using Motion = PictureSettings::Motion;
@@ -61,7 +65,7 @@ BakedGlb bakedGlb(const SourceSettings& from, std::optional<GrownSource> source,
 
 // A cloud as `grow` makes it, from the cache if it was grown before. One that raised warnings is grown each time, because they are not
 // kept.
-BakedMesh grownMesh(const SceneCloud& cloud, uint64_t memory_limit, Warnings& warnings) {
+BakedGlb grownGlb(const SceneCloud& cloud, uint64_t memory_limit, Warnings& warnings) {
   SourceSettings from;
   from.memory_limit = memory_limit;
   from.input = cloud.preset;
@@ -75,13 +79,18 @@ BakedMesh grownMesh(const SceneCloud& cloud, uint64_t memory_limit, Warnings& wa
   const std::string key = hashBytes(made_from);
 
   const CloudCache cache(cloudCacheFolder());
-  Warnings told_by_the_bake;
-  if (const auto kept = cache.find(key)) return decodeGlb(from.input, *kept, told_by_the_bake);
+  if (auto kept = cache.find(key)) return {std::move(*kept), {}};
   BakeReport report;
-  const BakedGlb baked = bakedGlb(from, std::move(source), given, report);
+  BakedGlb baked = bakedGlb(from, std::move(source), given, report);
   if (report.warnings.empty()) cache.add(key, baked.bytes);
   for (const auto& [kind, entry] : report.warnings.entries()) warnings.add(kind, cloud.preset + ": " + entry.first, entry.count);
-  return decodeGlb(from.input, baked.bytes, told_by_the_bake, baked.read);
+  return baked;
+}
+
+BakedMesh grownMesh(const SceneCloud& cloud, uint64_t memory_limit, Warnings& warnings) {
+  const BakedGlb baked = grownGlb(cloud, memory_limit, warnings);
+  Warnings told_by_the_bake;
+  return decodeGlb(cloud.preset, baked.bytes, told_by_the_bake, baked.read);
 }
 
 // The same vertices with the other kind of lobe and with harmonics of order 2.
@@ -100,11 +109,6 @@ BakedMesh readMesh(const std::filesystem::path& file, uint64_t memory_limit, War
   const std::string bytes = readFileBytes(file);
   if (isImpostor(bytes)) return boxWithImpostor(decodeImpostor(file, bytes, memory_limit));
   return decodeColoredGlb(file, bytes, warnings, read);
-}
-
-// By what the meshes of a scenery are found.
-std::string keyOf(const SceneCloud& cloud) {
-  return !cloud.file.empty() ? cloud.file.string() : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
 }
 
 const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
@@ -150,8 +154,9 @@ void growClouds(Scenery& scenery, Warnings& warnings) {
 
 // Throws unless this is the level of the cloud: its number, its input, and all that a lobe is lit with must agree, because the light of a
 // cloud would jump where it changes to the level.
-void checkLevel(const std::filesystem::path& file, const AssetInfo& level, int number, const std::filesystem::path& full_file,
+void checkLevel(const std::filesystem::path& file, const BakedMesh& mesh, int number, const std::filesystem::path& full_file,
                 const AssetInfo& full) {
+  const AssetInfo& level = mesh.info;
   constexpr const char* kCure = ": bake both again with --lods, or leave out levels = true";
   if (level.level != number || level.input_hash != full.input_hash)
     throw InputError(file.string(), fmt::format("this is not level {} of {}{}", number, full_file.string(), kCure));
@@ -160,6 +165,7 @@ void checkLevel(const std::filesystem::path& file, const AssetInfo& level, int n
       throw InputError(file.string(),
                        fmt::format("its {} is {}, but that of {} is {}{}", what, of_level, full_file.string(), of_full, kCure));
   };
+  if (mesh.impostor) return;  // its lobes are its own
   same("lobe", level.lobe, full.lobe);
   same("exponent", level.shape.exponent, full.shape.exponent);
   same("bias", level.shape.bias, full.shape.bias);
@@ -169,7 +175,7 @@ void checkLevel(const std::filesystem::path& file, const AssetInfo& level, int n
   same("order of harmonics", level.harmonic_order, full.harmonic_order);
 }
 
-// Gives an instance the levels of its cloud: the files beside it, up to the first that is missing.
+// Gives an instance the levels of its cloud: the files beside it, up to the first that is missing. There may be none.
 void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Warnings& warnings) {
   const auto [found, is_new] = scenery.levels.try_emplace(instance.mesh);
   for (size_t i = 1; is_new && i <= kMostLevels; ++i) {
@@ -177,13 +183,15 @@ void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Wa
     level.file = levelFile(cloud.file, i);
     if (!std::filesystem::exists(level.file)) break;
     const BakedMesh& mesh = meshOf(level, scenery, warnings);
-    checkLevel(level.file, mesh.info, int(i), cloud.file, instance.mesh->info);
+    checkLevel(level.file, mesh, int(i), cloud.file, instance.mesh->info);
     found->second.push_back(&mesh);
   }
-  if (found->second.empty())
-    throw InputError(cloud.file.string(), "levels = true, but there is no " + levelFile(cloud.file, 1).filename().string() +
-                                              " beside it: bake it with --lods 50%,25%,10%, or leave the key out");
   instance.levels = found->second;
+}
+
+[[noreturn]] void refuseWithoutLevels(const SceneCloud& cloud) {
+  throw InputError(cloud.file.string(), "levels = true, but there is no " + levelFile(cloud.file, 1).filename().string() +
+                                            " beside it: bake it with --lods 50%,25%,10%, or leave the key out");
 }
 
 // A cloud of a scene where it is placed, with its levels, and with the field that casts its shadow if there are shadows.
@@ -201,6 +209,9 @@ Instance placed(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
 DrawnField scattered(const SceneField& field, Scenery& scenery, Warnings& warnings) {
   DrawnField drawn{field.scatter, scatterClouds(field.scatter, field.weights), {}};
   for (const SceneCloud& cloud : field.clouds) drawn.meshes.push_back(placed(cloud, scenery, warnings));
+  const auto has_levels = [](const Instance& mesh) { return !mesh.levels.empty(); };
+  if (field.clouds.front().levels && std::none_of(drawn.meshes.begin(), drawn.meshes.end(), has_levels))
+    refuseWithoutLevels(field.clouds.front());
   return drawn;
 }
 
@@ -261,7 +272,10 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     scenery.read = sceneReader(*settings.scene, given, settings.picture);
     scene = scenery.read(std::nullopt);
     growClouds(scenery, report.warnings);
-    for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back(placed(cloud, scenery, report.warnings));
+    for (const SceneCloud& cloud : scene.clouds) {
+      scenery.instances.push_back(placed(cloud, scenery, report.warnings));
+      if (cloud.levels && scenery.instances.back().levels.empty()) refuseWithoutLevels(cloud);
+    }
     for (const SceneField& field : scene.fields) scenery.fields.push_back(scattered(field, scenery, report.warnings));
   } else {
     SceneCloud asset;
@@ -355,6 +369,10 @@ void drawFilm(const Scenery& scenery, const PictureSink& sink, Pictures& drawn, 
 }
 
 }  // namespace
+
+std::string assetOf(const SceneCloud& cloud, uint64_t memory_limit, Warnings& warnings) {
+  return cloud.file.empty() ? grownGlb(cloud, memory_limit, warnings).bytes : readFileBytes(cloud.file);
+}
 
 BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, BakeReport& report) {
   const BakedGlb baked = bakedGlb(from, isGrown(from.kind) ? std::optional(readGrownSource(from)) : std::nullopt, given, report);

@@ -29,6 +29,11 @@ struct Pictures {
 /// Grows or reads a cloud and bakes it as `grow` and `bake` do, with these options. Throws as they do.
 BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, BakeReport& report);
 
+/// By what Scenery::meshes has the mesh of a cloud.
+std::string keyOf(const SceneCloud& cloud);
+/// The bytes of the asset of a cloud of a scene: of its file, or as it is grown for the scene. Throws as reading and growing do.
+std::string assetOf(const SceneCloud& cloud, uint64_t memory_limit, Warnings& warnings);
+
 /// Reads the asset, or the scene with its clouds. The options `given` override the view of the scene.
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 

@@ -321,8 +321,10 @@ CompositeSettings compositeOf(const SceneFile& scene) {
 std::vector<Instance> withLevels(std::span<const Instance> instances, const Camera& camera) {
   std::vector<Instance> seen(instances.begin(), instances.end());
   for (Instance& instance : seen) {
-    instance.is_seen = !instance.scattered || isInView(instance, camera);
-    if (instance.is_seen) instance.mesh = &levelAt(instance, camera);
+    instance.is_seen = instance.is_seen && (!instance.scattered || isInView(instance, camera));
+    if (!instance.is_seen) continue;
+    if (!instance.sized_as) instance.sized_as = instance.mesh;
+    instance.mesh = &levelAt(instance, camera);
   }
   return seen;
 }

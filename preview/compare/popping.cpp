@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "preview/camera.h"
+#include "preview/mesh_clouds/impostor.h"
 #include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
@@ -40,13 +41,14 @@ Camera cameraFrom(const Box& box, float azimuth) {
   return camera;
 }
 
-Image drawn(const BakedMesh& mesh, const Camera& camera, const Image* sky = nullptr) {
+Image drawn(const BakedMesh& mesh, const Camera& camera, float half_lambert, const Image* sky = nullptr) {
   LightSettings light = lightForSun(kSunAzimuth, kSunElevation);
+  light.half_lambert = half_lambert;
   light.samples_per_side = 1;
   light.sky.colors = kColors;
   light.sky.horizon_exponent = 8;
   light.sky.glow = 0.25F;
-  return renderLobe(mesh, camera, light, sky);
+  return mesh.impostor ? renderImpostor(*mesh.impostor, camera, light) : renderLobe(mesh, camera, light, sky);
 }
 
 // The sky around a cloud and its halvings, from the largest size to the smallest one: linear colours, and the same as they are shown.
@@ -84,12 +86,13 @@ Image tonesOf(const Image& colors, const std::vector<uint8_t>& shows, const Imag
   return tones;
 }
 
-Picture pictureOf(const BakedMesh& mesh, const Camera& camera, const Skies& skies) {
+// At one of the sizes of the skies.
+Picture pictureOf(const BakedMesh& mesh, const Camera& camera, float half_lambert, const Skies& skies, size_t size = 0) {
   constexpr float kSeen = 1e-3F;  // of an opacity
-  const Image& sky = skies.colors[0];
-  Picture picture{drawn(mesh, camera, &sky), {}, std::vector<uint8_t>(sky.pixels.size())};
+  const Image& sky = skies.colors[size];
+  Picture picture{drawn(mesh, camera, half_lambert, &sky), {}, std::vector<uint8_t>(sky.pixels.size())};
   for (size_t i = 0; i < sky.pixels.size(); ++i) picture.shows[i] = length(picture.colors.pixels[i] - sky.pixels[i]) > kSeen;
-  picture.tones = tonesOf(picture.colors, picture.shows, skies.tones[0]);
+  picture.tones = tonesOf(picture.colors, picture.shows, skies.tones[size]);
   return picture;
 }
 
@@ -124,12 +127,12 @@ struct Popping::Side {
   std::vector<Picture> full;  // from the largest size to the smallest one
 };
 
-Popping::Popping(const BakedMesh& full) : sides_(std::size(kCameraAzimuths)) {
+Popping::Popping(const BakedMesh& full, float half_lambert) : half_lambert_(half_lambert), sides_(std::size(kCameraAzimuths)) {
   parallelFor(sides_.size(), [&](size_t i) {
     Side& side = sides_[i];
     side.camera = cameraFrom(drawnBox(full.surface), kCameraAzimuths[i]);
-    side.skies = skiesOf(drawn({}, side.camera));
-    side.full.push_back(pictureOf(full, side.camera, side.skies));
+    side.skies = skiesOf(drawn({}, side.camera, half_lambert_));
+    side.full.push_back(pictureOf(full, side.camera, half_lambert_, side.skies));
     for (size_t half = 1; half <= kHalvings; ++half) side.full.push_back(halved(side.full.back(), side.skies.tones[half]));
   });
 }
@@ -137,15 +140,45 @@ Popping::Popping(const BakedMesh& full) : sides_(std::size(kCameraAzimuths)) {
 Popping::~Popping() = default;
 
 std::vector<SizeChange> Popping::changesBy(const BakedMesh& level) const {
+  if (level.impostor) return changesByImpostor(level);
   std::vector<SizeChange> changes(kHalvings + 1);
   for (const Side& side : sides_) {
-    Picture picture = pictureOf(level, side.camera, side.skies);
+    Picture picture = pictureOf(level, side.camera, half_lambert_, side.skies);
     for (size_t i = 0; i <= kHalvings; ++i) {
       if (i > 0) picture = halved(picture, side.skies.tones[i]);
       changes[i] = {float(kLargestSize >> i), std::max(changes[i].rms, rmsBetween(side.full[i], picture))};
     }
   }
   return changes;
+}
+
+// Its mip levels follow the size, so that small pictures of it are not means of large ones.
+std::vector<SizeChange> Popping::changesByImpostor(const BakedMesh& level) const {
+  std::vector<SizeChange> changes;
+  for (size_t i = 0; i <= kHalvings; ++i) {
+    const int pixels = kLargestSize >> i;
+    if (pixels > kLargestOfImpostors) continue;
+    SizeChange change{float(pixels), 0};
+    for (const Side& side : sides_) {
+      Camera camera = side.camera;
+      camera.width >>= i, camera.height >>= i;
+      change.rms = std::max(change.rms, rmsBetween(side.full[i], pictureOf(level, camera, half_lambert_, side.skies, i)));
+    }
+    changes.push_back(change);
+  }
+  return changes;
+}
+
+float changeAt(std::span<const SizeChange> changes, float pixels) {
+  if (changes.empty()) return 0;
+  if (pixels >= changes.front().pixels) return changes.front().rms;
+  for (size_t i = 1; i < changes.size(); ++i) {
+    const SizeChange &larger = changes[i - 1], &smaller = changes[i];
+    if (pixels < smaller.pixels) continue;
+    const float share = std::log(pixels / smaller.pixels) / std::log(larger.pixels / smaller.pixels);
+    return smaller.rms > 0 ? smaller.rms * std::pow(larger.rms / smaller.rms, share) : share * larger.rms;
+  }
+  return changes.back().rms;
 }
 
 int switchPixels(std::span<const SizeChange> changes, float most) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "preview/mesh_clouds/lit_mesh.h"
 
 namespace cloudbake {
 
@@ -21,15 +22,19 @@ struct SizeChange {
 /// behind, drawn as by renderLobe.
 class Popping {
  public:
-  explicit Popping(const BakedMesh& full);
+  /// `half_lambert`: as in LightSettings, which an impostor of a mesh has been made with.
+  explicit Popping(const BakedMesh& full, float half_lambert = LightSettings{}.half_lambert);
   ~Popping();
 
   /// The changes by a level, from the largest size to the smallest one. The largest size has one ray per pixel, so that it shows the change
-  /// that no mean over a pixel makes smaller: that of all sizes above it.
+  /// that no mean over a pixel makes smaller: that of all sizes above it. An impostor is drawn at each size, up to kLargestOfImpostors.
   std::vector<SizeChange> changesBy(const BakedMesh& level) const;
+  static constexpr int kLargestOfImpostors = 256;
 
  private:
+  std::vector<SizeChange> changesByImpostor(const BakedMesh& level) const;
   struct Side;
+  float half_lambert_;
   std::vector<Side> sides_;
 };
 
@@ -37,5 +42,8 @@ class Popping {
 /// change is a power of the size. If it is not above `most` at the largest size, the answer is kLargestSwitch.
 int switchPixels(std::span<const SizeChange> changes, float most = kMostPopping);
 inline constexpr int kLargestSwitch = 4000;  ///< a cloud that fills the largest screens
+
+/// The change at any size: between two sizes it is a power of the size, beyond the first and the last one it is theirs. No changes: 0.
+float changeAt(std::span<const SizeChange> changes, float pixels);
 
 }  // namespace cloudbake

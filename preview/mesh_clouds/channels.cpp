@@ -37,7 +37,7 @@ float meanLongestSide(std::span<const Instance> instances) {
       sum += instance.scattered->longest_side, ++count;
       continue;
     }
-    const Box box = drawnBox(instance.mesh->surface, instance.to_world);
+    const Box box = drawnBox((instance.sized_as ? instance.sized_as : instance.mesh)->surface, instance.to_world);
     if (!box.empty()) sum += box.longestSide(), ++count;
   }
   return sum > 0 ? sum / float(count) : 1;

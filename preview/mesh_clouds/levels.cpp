@@ -18,10 +18,13 @@ float longestStretched(const Instance& instance) {
 }
 
 float pixelsAcross(const Instance& instance, const Camera& camera) {
-  const Box box = placedBox(instance);
+  return pixelsAcross(placedBox(instance), longestStretched(instance), camera);
+}
+
+float pixelsAcross(const Box& box, float longest_side, const Camera& camera) {
   const Vec3 eye = camera.look_from, nearest{std::clamp(eye.x, box.low.x, box.high.x), std::clamp(eye.y, box.low.y, box.high.y),
                                              std::clamp(eye.z, box.low.z, box.high.z)};
-  return longestStretched(instance) * float(camera.height) /
+  return longest_side * float(camera.height) /
          (2 * length(eye - nearest) * std::tan(camera.vertical_fov_degrees * float(kPi / 360)));
 }
 
@@ -33,9 +36,10 @@ const BakedMesh& levelAt(const Instance& instance, const Camera& camera) {
   return *instance.mesh;
 }
 
-bool isInView(const Instance& instance, const Camera& camera) {
+bool isInView(const Instance& instance, const Camera& camera) { return isInView(placedBox(instance), camera); }
+
+bool isInView(const Box& box, const Camera& camera) {
   constexpr float kMargin = 1.001F;  // for rounding
-  const Box box = placedBox(instance);
   const CameraAxes axes = cameraAxes(camera);
   const float half_height = kMargin * std::tan(camera.vertical_fov_degrees * float(kPi / 360)),
               half_width = half_height * float(camera.width) / float(camera.height);

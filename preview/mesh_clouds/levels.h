@@ -14,10 +14,14 @@ float longestStretched(const Instance& instance);
 /// camera changes it.
 float pixelsAcross(const Instance& instance, const Camera& camera);
 
+/// The same for an instance whose box and longest side are known.
+float pixelsAcross(const Box& placed, float longest_side, const Camera& camera);
+
 /// The coarsest of the instance's levels whose switch_pixels are no fewer than those; the mesh itself if there is none.
 const BakedMesh& levelAt(const Instance& instance, const Camera& camera);
 
 /// Whether something of an instance may be in the picture: not all corners of its box are behind the camera or beyond one side.
 bool isInView(const Instance& instance, const Camera& camera);
+bool isInView(const Box& placed, const Camera& camera);
 
 }  // namespace cloudbake

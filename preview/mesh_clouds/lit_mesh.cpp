@@ -112,23 +112,37 @@ std::vector<Vec3> lightOfLamps(const Instance& instance, std::span<const Vec3> n
   return sums;
 }
 
-// Places one instance in the frame of `lit`, lights it, and appends it.
-void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
+// Where an instance is in a mesh of several.
+struct InstancePlace {
+  const Instance* instance;
+  size_t first_vertex, first_triangle;
+};
+
+// Places one instance in the frame of `lit`, which has room for it, and lights it.
+void placeInstance(const InstancePlace& place, const LightSettings& light, LitMesh& lit) {
+  const Instance& instance = *place.instance;
   const BakedMesh& mesh = *instance.mesh;
-  const auto first = uint32_t(lit.positions.size());
-  for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(transformPoint(instance.to_world, p)));
+  const auto positions = std::span(lit.positions).subspan(place.first_vertex, mesh.surface.positions.size());
+  const auto shades = std::span(lit.shades).subspan(place.first_vertex, positions.size());
+  for (size_t i = 0; i < positions.size(); ++i) positions[i] = lit.toFrame(transformPoint(instance.to_world, mesh.surface.positions[i]));
 
   const std::vector<Triangle> triangles = worldTriangles(instance);
-  for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
+  const auto first = uint32_t(place.first_vertex);
+  for (size_t t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    lit.triangles[place.first_triangle + t] = {a + first, b + first, c + first};
+  }
   if (light.shown == ShownLight::kOwnRedGreen || light.shown == ShownLight::kOwnBlue) {
-    for (const Vec3& own : ownColors(mesh))
-      lit.shades.push_back(light.shown == ShownLight::kOwnRedGreen ? Shade{own.x, own.y} : Shade{own.z, 0});
+    const std::vector<Vec3> own = ownColors(mesh);
+    for (size_t i = 0; i < own.size(); ++i)
+      shades[i] = light.shown == ShownLight::kOwnRedGreen ? Shade{own[i].x, own[i].y} : Shade{own[i].z, 0};
     return;
   }
-  const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
+  const auto normals = worldNormals(instance, positions, triangles);
   if (light.shown != ShownLight::kSunAndSky) {
-    for (const Vec3& lamps : lightOfLamps(instance, normals, light))
-      lit.shades.push_back(light.shown == ShownLight::kLampsRedGreen ? Shade{lamps.x, lamps.y} : Shade{lamps.z, 0});
+    const std::vector<Vec3> lamps = lightOfLamps(instance, normals, light);
+    for (size_t i = 0; i < lamps.size(); ++i)
+      shades[i] = light.shown == ShownLight::kLampsRedGreen ? Shade{lamps[i].x, lamps[i].y} : Shade{lamps[i].z, 0};
     return;
   }
   const VertexTransmittance transmittance(instance, light);
@@ -137,8 +151,8 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   for (size_t i = 0; i < mesh.lobes.size(); ++i) {
     const float share = instance.sun_shares.empty() ? 1 : instance.sun_shares[i];
     const float sun = std::min(gain * transmittance.towards(i, to_light), 1.0F);
-    lit.shades.push_back({sun * surfaceFactor(normals[i], to_light, light.half_lambert) * share,
-                          transmittance.towards(i, {0, 1, 0}) * surfaceFactor(normals[i], {0, 1, 0}, light.half_lambert_sky)});
+    shades[i] = {sun * surfaceFactor(normals[i], to_light, light.half_lambert) * share,
+                 transmittance.towards(i, {0, 1, 0}) * surfaceFactor(normals[i], {0, 1, 0}, light.half_lambert_sky)};
   }
 }
 
@@ -279,8 +293,15 @@ LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& li
     box.add(drawn.high);
   }
   LitMesh lit = frameOf(box);
-  for (const Instance& instance : instances)
-    if (instance.is_seen && !instance.mesh->impostor) addInstance(instance, light, lit);
+  std::vector<InstancePlace> places;
+  size_t vertices = 0, triangles = 0;
+  for (const Instance& instance : instances) {
+    if (!instance.is_seen || instance.mesh->impostor) continue;
+    places.push_back({&instance, vertices, triangles});
+    vertices += instance.mesh->surface.positions.size(), triangles += instance.mesh->surface.triangles.size();
+  }
+  lit.positions.resize(vertices), lit.shades.resize(vertices), lit.triangles.resize(triangles);
+  parallelFor(places.size(), [&](size_t i) { placeInstance(places[i], light, lit); });
   return lit;
 }
 

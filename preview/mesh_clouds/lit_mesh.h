@@ -60,6 +60,7 @@ struct Instance {
   std::span<const BakedMesh* const> levels = {};  ///< of detail, from fine to coarse; they must outlive the instance (levels.h)
   std::optional<Scattered> scattered = std::nullopt;  ///< of a cloud of a field
   bool is_seen = true;                                ///< else nothing of it is in the picture, and it is not drawn
+  const BakedMesh* sized_as = nullptr;                ///< the full mesh, where `mesh` is a level of it
 };
 
 /// The own colour of each vertex, linear; white where a mesh has none.

@@ -87,10 +87,18 @@ std::vector<Face> facesOf(const LitMesh& lit, const Camera& camera) {
     const double x = double(p.x) - from.x, y = double(p.y) - from.y, z = double(p.z) - from.z, w = along(axes.forward, x, y, z);
     places[v] = {center_x * w + pixels * along(axes.right, x, y, z), center_y * w - pixels * along(axes.up, x, y, z), w};
   });
+  constexpr size_t kTogether = 1 << 16;  // triangles of a group
+  std::vector<std::vector<Face>> groups((lit.triangles.size() + kTogether - 1) / kTogether);
+  parallelFor(groups.size(), [&](size_t g) {
+    for (size_t t = g * kTogether; t < std::min((g + 1) * kTogether, lit.triangles.size()); ++t) {
+      const auto& [a, b, c] = lit.triangles[t];
+      if (const auto face = faceOf({places[a], places[b], places[c]}, uint32_t(t), camera.width, camera.height)) groups[g].push_back(*face);
+    }
+  });
   std::vector<Face> faces;
-  for (uint32_t t = 0; t < lit.triangles.size(); ++t) {
-    const auto& [a, b, c] = lit.triangles[t];
-    if (const auto face = faceOf({places[a], places[b], places[c]}, t, camera.width, camera.height)) faces.push_back(*face);
+  for (std::vector<Face>& group : groups) {
+    faces.insert(faces.end(), group.begin(), group.end());
+    group = {};
   }
   return faces;
 }

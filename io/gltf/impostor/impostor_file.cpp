@@ -21,19 +21,21 @@ Json numbersOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 Vec3 vectorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }
 
 Json writeImpostorInfo(const ImpostorInfo& info) {
-  return {{"layout", kImpostorLayout},
-          {"version", kVersion},
-          {"views", info.views},
-          {"frame", info.frame},
-          {"of", info.of == ImpostorOf::kMesh ? "mesh" : "volume"},
-          {"center", numbersOf(info.center)},
-          {"radius", shortest(info.radius)},
-          {"box", {numbersOf(info.box.low), numbersOf(info.box.high)}},
-          {"exponent", shortest(info.exponent)},
-          {"extinction", shortest(info.extinction)},
-          {"thickest", shortest(info.thickest)},
-          {"gains", info.gains},
-          {"input_hash", info.input_hash}};
+  Json json{{"layout", kImpostorLayout},
+            {"version", kVersion},
+            {"views", info.views},
+            {"frame", info.frame},
+            {"of", info.of == ImpostorOf::kMesh ? "mesh" : "volume"},
+            {"center", numbersOf(info.center)},
+            {"radius", shortest(info.radius)},
+            {"box", {numbersOf(info.box.low), numbersOf(info.box.high)}},
+            {"exponent", shortest(info.exponent)},
+            {"extinction", shortest(info.extinction)},
+            {"thickest", shortest(info.thickest)},
+            {"gains", info.gains},
+            {"input_hash", info.input_hash}};
+  if (info.level > 0) json["level"] = info.level, json["switch_pixels"] = info.switch_pixels, json["level_of"] = info.level_of;
+  return json;
 }
 
 // The chunk of buffers, and its views.
@@ -152,6 +154,13 @@ Impostor decodeImpostor(const std::filesystem::path& file, std::string_view byte
     info.thickest = own.at("thickest").get<float>();
     info.gains = own.at("gains").get<bool>();
     info.input_hash = own.at("input_hash").get<std::string>();
+    if (own.contains("level")) {
+      const int64_t level = wholeNumber(own.at("level")), pixels = wholeNumber(own.at("switch_pixels"));
+      if (level < 1 || level > int64_t(kMostLevels) || pixels < 0 || pixels > kLargestAtlas)
+        throw InputError(file.string(), "the impostor's level is out of range: plan the scene again");
+      info.level = int(level), info.switch_pixels = int(pixels);
+      info.level_of = own.at("level_of").get<std::string>();
+    }
     for (const float number : {info.center.x, info.center.y, info.center.z, info.box.low.x, info.box.low.y, info.box.low.z, info.box.high.x,
                                info.box.high.y, info.box.high.z, info.exponent, info.extinction, info.thickest})
       if (!std::isfinite(number)) throw InputError(file.string(), "a number of the impostor is not finite in 32 bits");

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file/read_settings.h"
 #include "io/gltf/document.h"
 #include "io/gltf/sculpt/bundles.h"
 #include "io/gltf/tinygltf.h"

@@ -1,0 +1,210 @@
+// With a price λ of an error, each cloud takes the way of the least cost + λ · area · change². That makes the cheapest plan of all that
+// have the same sum of errors, and the error falls as λ grows, so that λ is found by bisection (H. Everett, "Generalized Lagrange
+// multiplier method", 1963). Files and draws are shared by clouds: ways are left out one after the other for as long as all of it becomes
+// cheaper.
+#include "pipeline/plan/choose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cloudbake {
+
+namespace {
+
+constexpr float kSmallest = 8;   // of the first step, pixels
+constexpr double kFilled = 0.5;  // of the square of the longest side is covered by a cloud
+// No cloud changes more than this many times as much as its picture may.
+constexpr double kMostOfOneCloud = 3;
+
+struct Weights {
+  double vertex = 1, draw = kVerticesPerDraw, byte = 1 / kBytesPerVertex;
+  double of(const PlanCost& cost) const { return vertex * cost.vertices + draw * cost.draws + byte * cost.bytes; }
+};
+
+// The ways that may be used, by asset.
+using Kept = std::vector<std::vector<bool>>;
+
+class Chooser {
+ public:
+  Chooser(std::span<const std::vector<DrawnWay>> assets, std::span<const ViewCounts> views, double change, double picture_pixels,
+          double correction)
+      : assets_(assets), views_(views), change_(change) {
+    for (size_t step = 0; step < kSizeSteps; ++step)
+      areas_[step] = std::min(picture_pixels, kFilled * std::pow(double(sizeOfStep(step)), 2));
+    for (const std::vector<DrawnWay>& ways : assets)
+      for (auto& errors = squares_.emplace_back(); const DrawnWay& way : ways) {
+        auto& of_way = errors.emplace_back();
+        for (size_t step = 0; step < kSizeSteps; ++step)
+          of_way[step] = std::pow(correction * double(changeAt(way.changes, sizeOfStep(step))), 2);
+      }
+  }
+
+  // The cheapest plan with these ways. The finest kept way is drawn at all sizes above those of the others.
+  PlannedWays withWays(const Kept& kept, const Weights& weights) const {
+    constexpr double kLowest = -30, kHighest = 60;  // of log2 λ
+    constexpr int kHalvings = 40;
+    double low = kLowest, high = kHighest;
+    PlannedWays best = at(kept, weights, std::exp2(high));
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      PlannedWays plan = at(kept, weights, std::exp2(middle));
+      (plan.change <= change_ ? high : low) = middle;
+      if (plan.change <= change_) best = std::move(plan);
+    }
+    return best;
+  }
+
+ private:
+  using Steps = std::array<uint8_t, kSizeSteps>;  // the way of each
+
+  // Larger clouds have no coarser ways.
+  Steps stepsOf(size_t asset, const std::vector<bool>& kept, const Weights& weights, double price) const {
+    const std::vector<DrawnWay>& ways = assets_[asset];
+    const double most = std::pow(kMostOfOneCloud * change_, 2);
+    const size_t finest = size_t(std::find(kept.begin(), kept.end(), true) - kept.begin());
+    Steps steps{};
+    size_t coarsest = ways.size() - 1;
+    for (size_t step = 0; step < kSizeSteps; ++step) {
+      size_t chosen = finest;
+      double least = std::numeric_limits<double>::infinity();
+      for (size_t way = 0; way <= coarsest; ++way) {
+        if (!kept[way] || (way != finest && (squares_[asset][way][step] > most || step + 1 == kSizeSteps))) continue;
+        const double cost = weights.vertex * double(ways[way].vertices) + price * areas_[step] * squares_[asset][way][step];
+        if (cost < least) least = cost, chosen = way;
+      }
+      steps[step] = uint8_t(chosen);
+      coarsest = std::max(chosen, finest);
+    }
+    return steps;
+  }
+
+  PlannedWays at(const Kept& kept, const Weights& weights, double price) const {
+    std::vector<Steps> steps;
+    PlannedWays plan;
+    for (size_t asset = 0; asset < assets_.size(); ++asset) {
+      const Steps& own = steps.emplace_back(stepsOf(asset, kept[asset], weights, price));
+      std::vector<int>& sizes = plan.switch_pixels.emplace_back(assets_[asset].size());
+      for (size_t step = 0; step + 1 < kSizeSteps; ++step) sizes[own[step]] = int(sizeOfStep(step));
+      sizes[own.back()] = kLargestSwitch;
+    }
+    std::vector<std::vector<bool>> used;
+    for (const std::vector<DrawnWay>& ways : assets_) used.emplace_back(ways.size());
+    for (const ViewCounts& view : views_) {
+      double vertices = 0, draws = 0, squares = 0, area = 0;
+      for (size_t asset = 0; asset < assets_.size(); ++asset) {
+        std::vector<bool> seen(assets_[asset].size());
+        for (size_t step = 0; step < kSizeSteps; ++step) {
+          const uint32_t count = view[asset][step];
+          if (count == 0) continue;
+          const size_t way = steps[asset][step];
+          vertices += count * double(assets_[asset][way].vertices);
+          squares += count * areas_[step] * squares_[asset][way][step];
+          area += count * areas_[step];
+          if (!seen[way]) seen[way] = used[asset][way] = true, ++draws;
+        }
+      }
+      plan.cost.vertices = std::max(plan.cost.vertices, vertices);
+      plan.cost.draws = std::max(plan.cost.draws, draws);
+      plan.changes.push_back(area > 0 ? std::sqrt(squares / area) : 0);
+      plan.change = std::max(plan.change, plan.changes.back());
+    }
+    for (size_t asset = 0; asset < assets_.size(); ++asset)
+      for (size_t way = 0; way < assets_[asset].size(); ++way)
+        if (used[asset][way])
+          plan.cost.bytes += double(assets_[asset][way].bytes);
+        else
+          plan.switch_pixels[asset][way] = 0;
+    return plan;
+  }
+
+  std::span<const std::vector<DrawnWay>> assets_;
+  std::span<const ViewCounts> views_;
+  double change_;
+  std::array<double, kSizeSteps> areas_{};                            // pixels that a cloud covers
+  std::vector<std::vector<std::array<double, kSizeSteps>>> squares_;  // of changes, by asset, way and step
+};
+
+PlannedWays cheapest(const Chooser& chooser, std::span<const std::vector<DrawnWay>> assets, double change, const Weights& weights) {
+  Kept kept;
+  for (const std::vector<DrawnWay>& ways : assets) kept.emplace_back(ways.size(), true);
+  PlannedWays best = chooser.withWays(kept, weights);
+  for (;;) {
+    std::optional<PlannedWays> better;
+    Kept with_less;
+    for (size_t asset = 0; asset < assets.size(); ++asset)
+      for (size_t way = 0; way < assets[asset].size(); ++way) {
+        if (!kept[asset][way] || std::count(kept[asset].begin(), kept[asset].end(), true) == 1) continue;
+        Kept less = kept;
+        less[asset][way] = false;
+        PlannedWays plan = chooser.withWays(less, weights);
+        if (plan.change > change || weights.of(plan.cost) >= weights.of((better ? *better : best).cost)) continue;
+        better = std::move(plan), with_less = std::move(less);
+      }
+    if (!better) return best;
+    best = std::move(*better), kept = std::move(with_less);
+  }
+}
+
+}  // namespace
+
+float sizeOfStep(size_t step) {
+  return step + 1 < kSizeSteps ? std::floor(kSmallest * std::exp2(float(step) / 4)) : std::numeric_limits<float>::infinity();
+}
+
+size_t stepOfSize(float pixels) {
+  size_t step = 0;
+  while (sizeOfStep(step) < pixels) ++step;
+  return step;
+}
+
+size_t wayAt(std::span<const int> switch_pixels, float pixels) {
+  size_t finest = 0;
+  while (finest + 1 < switch_pixels.size() && switch_pixels[finest] == 0) ++finest;
+  for (size_t way = switch_pixels.size(); way-- > finest + 1;)
+    if (pixels <= float(switch_pixels[way])) return way;
+  return finest;
+}
+
+PlanCost costOfFull(std::span<const std::vector<DrawnWay>> assets, std::span<const ViewCounts> views) {
+  PlanCost cost;
+  std::vector<bool> used(assets.size());
+  for (const ViewCounts& view : views) {
+    double vertices = 0, draws = 0;
+    for (size_t asset = 0; asset < assets.size(); ++asset) {
+      uint64_t count = 0;
+      for (const uint32_t one : view[asset]) count += one;
+      vertices += double(count) * double(assets[asset].front().vertices);
+      draws += count > 0 ? 1 : 0;
+      used[asset] = used[asset] || count > 0;
+    }
+    cost.vertices = std::max(cost.vertices, vertices);
+    cost.draws = std::max(cost.draws, draws);
+  }
+  for (size_t asset = 0; asset < assets.size(); ++asset)
+    if (used[asset]) cost.bytes += double(assets[asset].front().bytes);
+  return cost;
+}
+
+PlannedWays chooseWays(std::span<const std::vector<DrawnWay>> assets, std::span<const ViewCounts> views, const PlanBudget& budget,
+                       double picture_pixels, double correction) {
+  constexpr int kRounds = 16;
+  const Chooser chooser(assets, views, budget.change, picture_pixels, correction);
+  Weights weights;
+  PlannedWays plan = cheapest(chooser, assets, budget.change, weights);
+  // What exceeds its limit counts more and more, until the limit holds.
+  for (int round = 0; round < kRounds; ++round) {
+    bool exceeds = false;
+    const auto press = [&](const std::optional<double>& limit, double cost, double& weight) {
+      if (limit && cost > *limit) weight *= 3, exceeds = true;
+    };
+    press(budget.vertices, plan.cost.vertices, weights.vertex);
+    press(budget.bytes, plan.cost.bytes, weights.byte);
+    press(budget.draws, plan.cost.draws, weights.draw);
+    if (!exceeds) break;
+    plan = cheapest(chooser, assets, budget.change, weights);
+  }
+  return plan;
+}
+
+}  // namespace cloudbake
