@@ -216,10 +216,11 @@ std::vector<LevelAsset> levelsOf(const Cloud& cloud, std::span<const Lobe> lobes
     BakedMesh mesh;
     const Level level = levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), full_cloud->mesh(), mesh);
     mesh.info.level = int(i + 1);
-    mesh.info.switch_pixels = switchPixels(full_cloud->popping().changesBy(mesh));
+    std::vector<SizeChange> changes = full_cloud->popping().changesBy(mesh);
+    mesh.info.switch_pixels = switchPixels(changes);
     Warnings told;  // the full asset has them too
     assets[i] = {levelFile(settings.output.file, i + 1),
-                 encodeGlb(level.sculpt, level.lobes_per_part, mesh.info, settings.output.gltf, told, mesh.harmonics)};
+                 encodeGlb(level.sculpt, level.lobes_per_part, mesh.info, settings.output.gltf, told, mesh.harmonics), std::move(changes)};
     figures[i] = full_cloud->figuresOf(mesh);
     figures[i].file = assets[i].file.string();
   });

@@ -10,6 +10,7 @@
 #include "pipeline/fields/cloud.h"
 #include "pipeline/fields/stopwatch.h"
 #include "pipeline/options/settings.h"
+#include "preview/compare/popping.h"
 
 namespace cloudbake {
 
@@ -23,6 +24,7 @@ std::vector<std::filesystem::path> staleLevels(const std::filesystem::path& outp
 struct LevelAsset {
   std::filesystem::path file;
   std::string glb;
+  std::vector<SizeChange> changes;  ///< of the picture, by the level
 };
 
 /// Simplifies a baked cloud to each of settings.mesh.levels, and records the levels in the report, which must have the info of the full

@@ -78,17 +78,19 @@ class Maker {
   std::vector<MadeWay> all() {
     std::vector<MadeWay> ways{finest()};
     const bool is_packed = ways.front().mesh.info.density_max > 0;
-    const auto add = [&](std::string glb) {
-      MadeWay way = madeOf(std::move(glb));
+    const auto add = [&](MadeWay way) {
       if (way.drawn().vertices < ways.back().drawn().vertices) ways.push_back(std::move(way));
     };
-    for (std::string& glb : levels(is_packed)) add(std::move(glb));
-    if (auto glb = impostor()) add(std::move(*glb));
+    for (LevelAsset& level : levels(is_packed)) {
+      BakedMesh mesh = meshOf(file_, level.glb, settings_.memory_limit);
+      add({std::move(level.glb), std::move(mesh), std::move(level.changes)});
+    }
+    if (auto glb = impostor()) add(compared(std::move(*glb)));
     return ways;
   }
 
  private:
-  MadeWay madeOf(std::string glb) const {
+  MadeWay compared(std::string glb) const {
     MadeWay way{std::move(glb), {}, {}};
     way.mesh = meshOf(file_, way.glb, settings_.memory_limit);
     way.changes = popping_.changesBy(way.mesh);
@@ -99,21 +101,18 @@ class Maker {
     if (full_.info.density_max > 0) return {glb_, full_, {}};
     const GltfSettings gltf = settingsOf(file_, settings_, true).output.gltf;
     MadeWay packed =
-        madeOf(encodeGlb(cloud_.sculpt, lobesPerPart(cloud_.sculpt, full_.lobes), full_.info, gltf, told_.warnings, full_.harmonics));
+        compared(encodeGlb(cloud_.sculpt, lobesPerPart(cloud_.sculpt, full_.lobes), full_.info, gltf, told_.warnings, full_.harmonics));
     const auto is_slight = [&](const SizeChange& change) { return double(change.rms) <= kPackedShare * settings_.change; };
     if (std::all_of(packed.changes.begin(), packed.changes.end(), is_slight)) return packed;
     return {glb_, full_, {}};
   }
 
-  std::vector<std::string> levels(bool is_packed) {
+  std::vector<LevelAsset> levels(bool is_packed) {
     Settings settings = settingsOf(file_, settings_, is_packed);
     for (const double share : kLevelShares)
       if (share * double(full_.lobes.size()) >= kFewestVertices) settings.mesh.levels.push_back({share, true});
-    std::vector<std::string> glbs;
-    if (settings.mesh.levels.empty()) return glbs;
-    for (LevelAsset& level : makeLevels(cloud_, full_.lobes, full_.harmonics, settings, told_, watch_))
-      glbs.push_back(std::move(level.glb));
-    return glbs;
+    if (settings.mesh.levels.empty()) return {};
+    return makeLevels(cloud_, full_.lobes, full_.harmonics, settings, told_, watch_);
   }
 
   std::optional<std::string> impostor() {
