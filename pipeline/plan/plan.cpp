@@ -223,18 +223,28 @@ class Planner {
     double correction = kStart;
     std::optional<PlannedWays> accepted;
     std::vector<double> accepted_changes;
+    std::optional<std::pair<double, double>> within, beyond;  // corrections and what was measured with them
     for (int round = 0; round < kRounds; ++round) {
       take(chooseWays(drawn_, counts_, budget, pixels(), correction));
       measured_.clear();
       for (const auto& [view, hour] : worstPictures()) measured_.push_back(changeOf(view, hour));
       const double measured = *std::max_element(measured_.begin(), measured_.end());
+                   plan_.cost.vertices);
       const bool is_within = measured <= change;
       if (is_within && (!accepted || plan_.cost.vertices < accepted->cost.vertices)) accepted = plan_, accepted_changes = measured_;
-      constexpr double kNear = 0.85, kMargin = 1.05;
+      (is_within ? within : beyond) = {correction, measured};
+      constexpr double kNear = 0.85, kAim = 0.95, kClose = 1.03;
       if (is_within && measured >= kNear * change) break;
-      const double before = correction;
-      correction *= std::clamp(kMargin * measured / change, 0.4, 4.0);
-      if (accepted && std::abs(correction / before - 1) < 0.02) break;
+      const double wanted = std::max(kAim * change, 1e-3), found = std::max(measured, 1e-3);
+      correction *= std::clamp(found / wanted, 0.4, 4.0);
+      if (within && beyond) {  // between the two, the change is a power of the correction
+        const auto [near, least] = *within;
+        const auto [far, most] = *beyond;
+        if (near / far < kClose) break;
+        correction =
+            near *
+            std::pow(far / near, std::clamp(std::log(wanted / std::max(least, 1e-3)) / std::log(most / std::max(least, 1e-3)), 0.1, 0.9));
+      }
     }
     if (!accepted) {  // the full assets change nothing but what packing does
       take(chooseWays(drawn_, counts_, budget, pixels(), 1e6));
