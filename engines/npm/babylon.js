@@ -22,7 +22,7 @@ import { Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js'
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
-import { DarkenPlugin, withoutComments } from './babylon_darken.js';
+import { darkenLights, withoutComments } from './babylon_darken.js';
 import { forwardOf } from './babylon_view.js';
 import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, impostorDefaults, impostorSettingsOf, settingsOf, shadowValues, skyDefaults,
   softValues, sunDefaults, switchPixelsOf } from './asset.js';
@@ -301,7 +301,7 @@ export class CloudMaterial extends SunlitMaterial {
     // Meshes that follow each other share the other uniforms.
     const effect = effectOverride ?? subMesh?.effect ?? this.getEffect();
     if (this.soft) effect.setArray2('shown', mesh?.metadata?.cloudShown ?? [0, 1]);
-    this.shade?.bind(effect, mesh);
+    this.shade?.bind(effect, subMesh?.getMesh() ?? mesh);
   }
 
   writeUniforms() {
@@ -543,13 +543,12 @@ export class CloudShadow {
   // scene mirrors.
   darken(material) {
     const uniforms = ['shadow_origin', 'shadow_right', 'shadow_up', 'shadow_to_sun', 'shadow_share', 'shadow_mirror'];
-    this.plugin = new DarkenPlugin(material, { name: 'cloud_shadow', text: `${CAST_SHADOW}\nuniform vec3 shadow_mirror;`,
+    return darkenLights(material, { name: 'cloud_shadow', text: `${CAST_SHADOW}\nuniform vec3 shadow_mirror;`,
       share: 'castShadow(shadow_mirror * vPositionW)', uniforms, texture: 'cloud_shadow', bind: (effect, scene) => {
         for (const [name, value] of Object.entries(shadowValues(this.frame, this.shadowStrength))) effect.setFloat3(name, ...value);
         effect.setFloat3('shadow_mirror', scene.useRightHandedSystem ? 1 : -1, 1, 1);
         effect.setTexture('cloud_shadow', this.texture);
       } });
-    return material;
   }
 }
 

@@ -8,36 +8,36 @@ export const withoutComments = shader => shader.replace(/ *\/\/.*$/gm, '');
  * A StandardMaterial or a PBRMaterial gets the shade of clouds: its direct light is multiplied by the share of a place in the world.
  * `shade`: a name, GLSL for the share and its declarations, the names of its uniforms and of its texture, and what sets them.
  * @typedef {{ name: string, text: string, share: string, uniforms: string[], texture: string, bind: (effect: any, scene: any) => void }} Shade
+ * @param {Shade} shade
  */
-export class DarkenPlugin extends MaterialPluginBase {
-  /** @param {Shade} shade */
-  constructor(material, shade) {
-    const define = shade.name.toUpperCase();
-    super(material, shade.name, 200, { [define]: false });
-    this.define = define;
-    this.shade = shade;
-    this._enable(true);
-  }
+export function darkenLights(material, { name, text, share, uniforms, texture, bind }) {
+  const define = name.toUpperCase();
+  const code = {
+    CUSTOM_FRAGMENT_DEFINITIONS: withoutComments(`#ifdef ${define}\n${text}\n#endif`),
+    '!aggShadow\\s*=\\s*aggShadow\\s*/\\s*numLights;': `aggShadow = aggShadow / numLights;
+      #ifdef ${define}
+        float ${name}_share = ${share};
+        diffuseBase *= ${name}_share;
+        #ifdef SPECULARTERM
+          specularBase *= ${name}_share;
+        #endif
+      #endif`,
+  };
 
-  getClassName() { return 'DarkenPlugin'; }
-  prepareDefines(defines) { defines[this.define] = true; }
-  getSamplers(samplers) { samplers.push(this.shade.texture); }
-  getUniforms() { return { ubo: [], externalUniforms: this.shade.uniforms }; }
-  bindForSubMesh(_buffer, scene, _engine, subMesh) { this.shade.bind(subMesh.effect, scene); }
+  // Babylon.js asks for the code while it constructs the base.
+  class DarkenPlugin extends MaterialPluginBase {
+    constructor() {
+      super(material, name, 200, { [define]: false });
+      this._enable(true);
+    }
 
-  getCustomCode(type) {
-    if (type !== 'fragment') return null;
-    const { define, shade: { name, text, share } } = this;
-    return {
-      CUSTOM_FRAGMENT_DEFINITIONS: withoutComments(`#ifdef ${define}\n${text}\n#endif`),
-      '!aggShadow\\s*=\\s*aggShadow\\s*/\\s*numLights;': `aggShadow = aggShadow / numLights;
-        #ifdef ${define}
-          float ${name}_share = ${share};
-          diffuseBase *= ${name}_share;
-          #ifdef SPECULARTERM
-            specularBase *= ${name}_share;
-          #endif
-        #endif`,
-    };
+    getClassName() { return 'DarkenPlugin'; }
+    prepareDefines(defines) { defines[define] = true; }
+    getSamplers(samplers) { samplers.push(texture); }
+    getUniforms() { return { ubo: [], externalUniforms: uniforms }; }
+    bindForSubMesh(_buffer, scene, _engine, subMesh) { bind(subMesh.effect, scene); }
+    getCustomCode(type) { return type === 'fragment' ? code : null; }
   }
+  new DarkenPlugin();
+  return material;
 }

@@ -7,7 +7,7 @@ import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js
 import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { ToHalfFloat } from '@babylonjs/core/Misc/textureTools.js';
 import { CloudMaterial } from './babylon.js';
-import { DarkenPlugin } from './babylon_darken.js';
+import { darkenLights } from './babylon_darken.js';
 import { MeshShade } from './mesh_shade.js';
 import { GROUND_SHADE } from './shaders.js';
 
@@ -69,31 +69,30 @@ export class CloudShade extends MeshShade {
   }
 
   setShifts(mesh, shifts) {
-    this.ownShifts.set(mesh, shifts);
-    if (mesh.hasThinInstances) mesh.thinInstanceSetBuffer(SHIFT, shifts, 3);
-    else if (mesh.instances.length) {
-      if (!mesh.instancedBuffers || !(SHIFT in mesh.instancedBuffers)) mesh.registerInstancedBuffer(SHIFT, 3);
-      mesh.instancedBuffers[SHIFT] = Vector3.Zero();
-      drawnOf(mesh).forEach((one, i) => { one.instancedBuffers[SHIFT] = Vector3.FromArray(shifts, 3 * i); });
-    }
+    if (mesh.hasThinInstances) return void mesh.thinInstanceSetBuffer(SHIFT, shifts, 3);
+    const drawn = drawnOf(mesh), has_buffer = mesh.instancedBuffers && SHIFT in mesh.instancedBuffers;
+    drawn.forEach((one, i) => this.ownShifts.set(one, Vector3.FromArray(shifts, 3 * i)));
+    if (!mesh.instances.length) return;
+    if (!has_buffer) mesh.registerInstancedBuffer(SHIFT, 3);
+    mesh.instancedBuffers[SHIFT] = Vector3.Zero();
+    for (const one of drawn) one.instancedBuffers[SHIFT] = this.ownShifts.get(one);
   }
 
-  // CloudMaterial calls it before each mesh; instances have their shifts as an attribute.
+  // CloudMaterial calls it before each mesh. Instances have their shifts as an attribute, but mirrored ones are drawn one by one.
   bind(effect, mesh) {
     effect.setTexture('cloud_shades', this.textures.others);
     effect.setArray4('cloud_shade_rows', this.rows);
-    effect.setFloat3(SHIFT, ...(this.ownShifts.get(mesh) ?? [0, 0, 0]).slice(0, 3));
+    effect.setVector3(SHIFT, this.ownShifts.get(mesh) ?? Vector3.ZeroReadOnly);
   }
 
   // A StandardMaterial or a PBRMaterial gets the shade of all clouds: its direct light is darkened. For things below the clouds.
   darken(material) {
-    this.plugin = new DarkenPlugin(material, { name: 'cloud_shade', text: GROUND_SHADE, share: 'shadeOfClouds(vPositionW)',
+    return darkenLights(material, { name: 'cloud_shade', text: GROUND_SHADE, share: 'shadeOfClouds(vPositionW)',
       uniforms: ['cloud_shade_rows', 'cloud_shade_strength'], texture: 'cloud_ground', bind: effect => {
         effect.setArray4('cloud_shade_rows', this.rows);
         effect.setFloat('cloud_shade_strength', this.shadeStrength);
         effect.setTexture('cloud_ground', this.textures.ground);
       } });
-    return material;
   }
 
   dispose() {

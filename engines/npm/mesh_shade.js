@@ -5,21 +5,19 @@ import { SweptShadow } from './swept_shadow.js';
 
 const SETTINGS = { strength: 1, softness: 0 };
 
-// The box of points, three numbers each.
-function boxOf(positions) {
+// The box around points, three numbers each, that the turn and the size of a matrix of 16 numbers by columns have moved.
+function turnedBox(positions, m) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < positions.length; ++i) {
-    low[i % 3] = Math.min(low[i % 3], positions[i]);
-    high[i % 3] = Math.max(high[i % 3], positions[i]);
+  for (let i = 0; i < positions.length; i += 3) {
+    const x = positions[i], y = positions[i + 1], z = positions[i + 2];
+    for (let r = 0; r < 3; ++r) {
+      const at = m[r] * x + m[4 + r] * y + m[8 + r] * z;
+      if (at < low[r]) low[r] = at;
+      if (at > high[r]) high[r] = at;
+    }
   }
   return { low, high };
 }
-
-// The box around a box that a matrix of 16 numbers by columns has moved.
-const placedBox = ({ low, high }, m) => boxOf(Array.from({ length: 8 }, (_, corner) => {
-  const [x, y, z] = low.map((side, axis) => corner >> axis & 1 ? high[axis] : side);
-  return [0, 1, 2].map(r => m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]);
-}).flat());
 
 // The inverse of the turn and the size of such a matrix, 3 × 3 by columns, with an offset of 0.
 function toOwn(m) {
@@ -29,8 +27,6 @@ function toOwn(m) {
   return [...minors.map(x => x / determinant), 0, 0, 0];
 }
 
-/** @typedef {{ size: number[], numbers: Float32Array }} Shares of the light, of a texture */
-
 /**
  * What an engine adds: placesOf(mesh), matrices of the copies of a mesh in the world, 16 numbers by columns; shapeOf(mesh), its positions
  * and triangles; showShares(past_others, on_ground), the textures; and setShifts(mesh, shifts), three numbers for each of these copies.
@@ -39,9 +35,9 @@ export class MeshShade {
   constructor(strength) {
     this.shadeStrength = strength;
     /** @type {any[]} */ this.meshes = [];
-    this.shapes = new WeakMap();  // field and box by geometry
+    this.shapes = new WeakMap();  // points and field by geometry
     this.shapeCount = 0;
-    this.shadows = new Map();  // of the last update, by shape, σ and how it is turned, under one sun
+    this.casts = new Map();  // shadows and boxes of the last update, by shape, σ and how it is turned, under one sun
     this.grid = null;
   }
 
@@ -66,7 +62,7 @@ export class MeshShade {
   knownShape(mesh) {
     if (!this.shapes.has(mesh.geometry)) {
       const { positions, triangles } = this.shapeOf(mesh);
-      this.shapes.set(mesh.geometry, { number: ++this.shapeCount, caster: casterOf(positions, triangles), ...boxOf(positions) });
+      this.shapes.set(mesh.geometry, { number: ++this.shapeCount, positions, caster: casterOf(positions, triangles) });
     }
     return this.shapes.get(mesh.geometry);
   }
@@ -77,7 +73,7 @@ export class MeshShade {
     const places = this.meshes.map(mesh => this.placesOf(mesh));
     const clouds = this.meshes.flatMap((mesh, i) => places[i].map(place => ({ mesh, place })));
     if (!clouds.length) return;
-    this.makeGrid(clouds, light, key === this.lightKey ? this.shadows : new Map());
+    this.makeGrid(clouds, light, key === this.lightKey ? this.casts : new Map());
     this.lightKey = key;
     const { grid, grid: { frame: { nodes: [width, height, depth] } } } = this;
     const { shifts, ...past_others } = grid.packed(clouds.map((_, own) => ({ ...grid.columns[own], own })));
@@ -88,19 +84,23 @@ export class MeshShade {
   }
 
   makeGrid(clouds, light, known) {
-    const used = new Map(), corners = [];
+    const used = new Map(), low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     let sides = 0;
-    const casts = clouds.map(({ mesh, place: m }) => {
-      const shape = this.knownShape(mesh), { extinction } = mesh.material, { low, high } = placedBox(shape, m);
-      const side = Math.max(...high.map((x, axis) => x - low[axis])), to_own = toOwn(m);
-      const shadow_key = `${shape.number} ${extinction} ${to_own.map(Math.fround)}`;
-      const shadow = known.get(shadow_key) ?? used.get(shadow_key) ?? new SweptShadow(shape.caster, to_own, extinction, light, SETTINGS);
-      used.set(shadow_key, shadow);
+    const shadows = clouds.map(({ mesh, place: m }) => {
+      const shape = this.knownShape(mesh), { extinction } = mesh.material, to_own = toOwn(m);
+      const cast_key = `${shape.number} ${extinction} ${to_own.map(Math.fround)}`;
+      const cast = known.get(cast_key) ?? used.get(cast_key) ?? { ...turnedBox(shape.positions, m),
+        shadow: new SweptShadow(shape.caster, to_own, extinction, light, SETTINGS) };
+      used.set(cast_key, cast);
+      const side = Math.max(...cast.high.map((x, axis) => x - cast.low[axis])), more = side / 8;  // the cells of a field reach beyond its mesh
       sides += side;
-      corners.push(...low.map(x => x - side / 8), ...high.map(x => x + side / 8));  // the cells of a field reach beyond its mesh
-      return { shadow, at: [m[12], m[13], m[14]], scale: 1, cosine: 1, sine: 0, power: 1 };
+      for (let axis = 0; axis < 3; ++axis) {
+        low[axis] = Math.min(low[axis], m[12 + axis] + cast.low[axis] - more);
+        high[axis] = Math.max(high[axis], m[12 + axis] + cast.high[axis] + more);
+      }
+      return { shadow: cast.shadow, at: [m[12], m[13], m[14]], scale: 1, cosine: 1, sine: 0, power: 1 };
     });
-    this.shadows = used;
-    this.grid = new ShadeGrid(shadeFrame({ ...boxOf(corners), cloud_size: sides / clouds.length }, light, [0, 0, 0]), casts, light);
+    this.casts = used;
+    this.grid = new ShadeGrid(shadeFrame({ low, high, cloud_size: sides / clouds.length }, light, [0, 0, 0]), shadows, light);
   }
 }

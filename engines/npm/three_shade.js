@@ -14,16 +14,6 @@ function textureOf([width, height, depth], numbers) {
   return texture;
 }
 
-// The matrices of the copies of a mesh in the world.
-function placesOf(mesh) {
-  if (!mesh.isInstancedMesh) return [mesh.matrixWorld];
-  return Array.from({ length: mesh.count }, (_, i) => {
-    const place = new Matrix4();
-    mesh.getMatrixAt(i, place);
-    return place.premultiply(mesh.matrixWorld);
-  });
-}
-
 export class CloudShade extends MeshShade {
   constructor({ strength = 1 } = {}) {
     super(strength);
