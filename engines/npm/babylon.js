@@ -539,8 +539,8 @@ export class CloudShadow {
     return new CloudShadow(texture, await answer.json(), strength);
   }
 
-  // A StandardMaterial or a PBRMaterial gets the shadow: its direct light is darkened. The frame is in the axes of glTF, which a left-handed
-  // scene mirrors.
+  // A StandardMaterial or a PBRMaterial gets the shadow: its direct light is darkened. The frame is in the axes of glTF, which a
+  // left-handed scene mirrors.
   darken(material) {
     const uniforms = ['shadow_origin', 'shadow_right', 'shadow_up', 'shadow_to_sun', 'shadow_share', 'shadow_mirror'];
     return darkenLights(material, { name: 'cloud_shadow', text: `${CAST_SHADOW}\nuniform vec3 shadow_mirror;`,

@@ -6,9 +6,9 @@ export const withoutComments = shader => shader.replace(/ *\/\/.*$/gm, '');
 
 /**
  * A StandardMaterial or a PBRMaterial gets the shade of clouds: its direct light is multiplied by the share of a place in the world.
- * `shade`: a name, GLSL for the share and its declarations, the names of its uniforms and of its texture, and what sets them.
- * @typedef {{ name: string, text: string, share: string, uniforms: string[], texture: string, bind: (effect: any, scene: any) => void }} Shade
- * @param {Shade} shade
+ * Its shade has a name, GLSL for the share and its declarations, the names of its uniforms and of its texture, and what sets them.
+ * @param {any} material
+ * @param {{ name: string, text: string, share: string, uniforms: string[], texture: string, bind: (effect: any, scene: any) => void }} _
  */
 export function darkenLights(material, { name, text, share, uniforms, texture, bind }) {
   const define = name.toUpperCase();

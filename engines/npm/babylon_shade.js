@@ -16,7 +16,8 @@ const SHIFT = 'cloud_shade_shift';
 /** A texture of half floats between 0 and 1 that is read between its places. @param {number[]} size @param {ArrayLike<number>} numbers */
 function textureOf([width, height, depth], numbers, scene) {
   const halves = Uint16Array.from(numbers, ToHalfFloat), { TEXTUREFORMAT_R, TEXTURE_BILINEAR_SAMPLINGMODE } = Constants;
-  const how = /** @type {const} */ ([TEXTUREFORMAT_R, scene, false, false, TEXTURE_BILINEAR_SAMPLINGMODE, Constants.TEXTURETYPE_HALF_FLOAT]);
+  const how = /** @type {const} */ ([TEXTUREFORMAT_R, scene, false, false, TEXTURE_BILINEAR_SAMPLINGMODE,
+    Constants.TEXTURETYPE_HALF_FLOAT]);
   const texture = depth ? new RawTexture3D(halves, width, height, depth, ...how) : new RawTexture(halves, width, height, ...how);
   texture.wrapU = texture.wrapV = texture.wrapR = Constants.TEXTURE_CLAMP_ADDRESSMODE;
   texture.anisotropicFilteringLevel = 1;  // which needs levels of the texture to be right

@@ -27,11 +27,19 @@ function toOwn(m) {
   return [...minors.map(x => x / determinant), 0, 0, 0];
 }
 
+/** @typedef {{ size: number[], numbers: Float32Array }} Shares of the light, of a texture */
+/** @typedef {{ positions: ArrayLike<number>, triangles: ArrayLike<number> }} Shape three numbers per vertex, three vertices per triangle */
+
 /**
- * What an engine adds: placesOf(mesh), matrices of the copies of a mesh in the world, 16 numbers by columns; shapeOf(mesh), its positions
- * and triangles; showShares(past_others, on_ground), the textures; and setShifts(mesh, shifts), three numbers for each of these copies.
+ * What an engine adds: the matrices of the copies of a mesh in the world, 16 numbers by columns, and its shape; and what it does with the
+ * textures, and with three numbers for each of these copies.
+ * @typedef {object} Engine
+ * @property {(mesh: any) => ArrayLike<number>[]} placesOf @property {(mesh: any) => Shape} shapeOf
+ * @property {(past_others: Shares, on_ground: Shares) => void} showShares @property {(mesh: any, shifts: Float32Array) => void} setShifts
  */
+
 export class MeshShade {
+  /** @param {number} strength */
   constructor(strength) {
     this.shadeStrength = strength;
     /** @type {any[]} */ this.meshes = [];
@@ -54,14 +62,12 @@ export class MeshShade {
     if (!this.meshes.some(({ material }) => material === mesh.material)) mesh.material.cloudShade = null;
   }
 
-  placesOf(_mesh) { return []; }
-  shapeOf(_mesh) { return { positions: [], triangles: [] }; }
-  showShares(_past_others, _on_ground) {}
-  setShifts(_mesh, _shifts) {}
+  /** @returns {Engine} */
+  get engine() { return /** @type {any} */ (this); }
 
   knownShape(mesh) {
     if (!this.shapes.has(mesh.geometry)) {
-      const { positions, triangles } = this.shapeOf(mesh);
+      const { positions, triangles } = this.engine.shapeOf(mesh);
       this.shapes.set(mesh.geometry, { number: ++this.shapeCount, positions, caster: casterOf(positions, triangles) });
     }
     return this.shapes.get(mesh.geometry);
@@ -70,7 +76,7 @@ export class MeshShade {
   // Makes the textures anew. Call it after clouds or sun have moved; `sun`: the direction to it, as of the materials.
   update({ x, y, z }) {
     const length = Math.hypot(x, y, z), light = [x / length, y / length, z / length], key = String(light);
-    const places = this.meshes.map(mesh => this.placesOf(mesh));
+    const places = this.meshes.map(mesh => this.engine.placesOf(mesh));
     const clouds = this.meshes.flatMap((mesh, i) => places[i].map(place => ({ mesh, place })));
     if (!clouds.length) return;
     this.makeGrid(clouds, light, key === this.lightKey ? this.casts : new Map());
@@ -78,9 +84,9 @@ export class MeshShade {
     const { grid, grid: { frame: { nodes: [width, height, depth] } } } = this;
     const { shifts, ...past_others } = grid.packed(clouds.map((_, own) => ({ ...grid.columns[own], own })));
     const lowest = { first: [0, 0, depth - 1], count: [width, height, 1] };
-    this.showShares(past_others, { size: [width, height], numbers: grid.sharesAround(lowest) });
+    this.engine.showShares(past_others, { size: [width, height], numbers: grid.sharesAround(lowest) });
     let first = 0;
-    this.meshes.forEach((mesh, i) => this.setShifts(mesh, shifts.slice(3 * first, 3 * (first += places[i].length))));
+    this.meshes.forEach((mesh, i) => this.engine.setShifts(mesh, shifts.slice(3 * first, 3 * (first += places[i].length))));
   }
 
   makeGrid(clouds, light, known) {
@@ -92,7 +98,8 @@ export class MeshShade {
       const cast = known.get(cast_key) ?? used.get(cast_key) ?? { ...turnedBox(shape.positions, m),
         shadow: new SweptShadow(shape.caster, to_own, extinction, light, SETTINGS) };
       used.set(cast_key, cast);
-      const side = Math.max(...cast.high.map((x, axis) => x - cast.low[axis])), more = side / 8;  // the cells of a field reach beyond its mesh
+      const side = Math.max(...cast.high.map((x, axis) => x - cast.low[axis]));
+      const more = side / 8;  // the cells of a field reach beyond its mesh
       sides += side;
       for (let axis = 0; axis < 3; ++axis) {
         low[axis] = Math.min(low[axis], m[12 + axis] + cast.low[axis] - more);

@@ -195,8 +195,8 @@ async function shadeOnTheGround(page, engine, more = {}) {
   const places = pixels.map(([x, y]) => inFrame(frame, (x + 0.5) / side, 1 - (y + 0.5) / side, frame.bottom - 1));
   const found = await ask(page, 'shadowAt', { cloud: 'cloud.glb', sun: frame.to_sun, places, ...more });
   const rms = Math.sqrt(found.reduce((sum, share, i) => sum + (share - wanted[i]) ** 2, 0) / found.length);
-  demand(rms < 0.08 && Math.min(...found) < 0.3, `${engine}${more.physical ? ', PBRMaterial' : ''}: the shade of a grid on a floor is the shadow's picture, ` +
-    `rms ${rms.toFixed(3)}`);
+  demand(rms < 0.08 && Math.min(...found) < 0.3, `${engine}${more.physical ? ', PBRMaterial' : ''}: the shade of a grid on a floor is ` +
+    `the shadow's picture, rms ${rms.toFixed(3)}`);
 }
 
 // A picture of four shares of light, and the frame of a sun from a side; the floor is in it, beside it, and above the cloud's bottom.

@@ -81,6 +81,6 @@ await testPage(folder, async page => {
   await openEngine(page, address, 'three_shade');
   await pictures(page, 'three.js', ['nodes', 'InstancedMesh']);
   await openEngine(page, address, 'babylon_shade');
-  for (const rightHanded of [true, false])
-    await pictures(page, `Babylon.js, ${rightHanded ? 'right' : 'left'}-handed`, ['meshes', 'instances', 'thin instances'], { rightHanded });
+  for (const [hand, rightHanded] of [['right', true], ['left', false]])
+    await pictures(page, `Babylon.js, ${hand}-handed`, ['meshes', 'instances', 'thin instances'], { rightHanded });
 });
