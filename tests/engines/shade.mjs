@@ -37,7 +37,8 @@ function nearOf(values, truth, counts = () => true) {
 const truths = [];
 
 // What preview draws of the scene from a view, with the grid and without shade.
-async function truthOf(page, [camera, sun]) {
+async function truthOf(page, angles) {
+  const [camera, sun] = angles;
   const drawn = [];
   for (const shade of ['grid', 'none']) {
     writeFileSync(join(folder, `${shade}.toml`), sceneOf(shade));
@@ -46,7 +47,7 @@ async function truthOf(page, [camera, sun]) {
   }
   const [grid, none] = drawn, isShaded = i => Math.abs(grid[i] - none[i]) > 2, count = [...grid.keys()].filter(isShaded).length;
   demand(count > 5000, `camera ${camera}, sun ${sun}: shade changes ${count} of ${grid.length} values of preview's picture by more than 2`);
-  return { name: `camera ${camera}, sun ${sun}`, view: viewOf(['--scene', 'grid.toml'], camera, sun, 'painted'), grid, isShaded };
+  return { name: `camera ${camera}, sun ${sun}`, angles, view: viewOf(['--scene', 'grid.toml'], camera, sun, 'painted'), grid, isShaded };
 }
 
 const turned = ([x, y, z], degrees) => {
@@ -56,15 +57,24 @@ const turned = ([x, y, z], degrees) => {
 
 async function pictures(page, engine, kinds, options) {
   await load(page, 'cloud', 'cloud.glb', options);
-  for (const { name, view, grid, isShaded } of truths) {
+  for (const { name, angles, view, grid, isShaded } of truths) {
     const given = { matrices, view: { ...view, changes: { doubleSided: true } }, size: view.scene.noise.longest };
-    const paint = async (kind, sun) => Object.values(await page.evaluate(one => window.kit.paint(window.subjects.cloud, one),
-      { ...given, kind, sun }));
+    const paint = async (kind, sun, more = {}) => Object.values(await page.evaluate(one => window.kit.paint(window.subjects.cloud, one),
+      { ...given, kind, sun, ...more }));
     for (const kind of kinds) {
       const values = await paint(kind, view.sun), all = nearOf(values, grid), own = nearOf(values, grid, isShaded);
       demand(all >= NEAR && own >= NEAR_IN_SHADE, `${engine}, ${kind}, ${name}: ${percent(all)} of values are within 2 of preview's, ` +
         `${percent(own)} of those in the shade`);
     }
+    if (engine !== 'three.js' && angles === VIEWS[0])
+      for (const kind of kinds) {
+        const places = { from: CLOUDS.map(one => matrixOf({ ...one, position: one.position?.map(x => 1.2 * x) })) };
+        const still = await paint(kind, view.sun);
+        const moved = nearOf(await paint(kind, view.sun, places), still);
+        const stale = nearOf(await paint(kind, view.sun, { ...places, is_stale: true }), still, isShaded);
+        demand(moved === 1 && stale < CONTROL, `${engine}, ${kind} that were moved have the shade of their new places; control: ` +
+          `without an update ${percent(stale)} of values in the shade are within 2`);
+      }
     for (const [mistake, sun] of Object.entries({ 'without shade': null, 'shade of a sun 10 degrees beside': turned(view.sun, 10) })) {
       const values = await paint(kinds[0], sun), all = nearOf(values, grid), own = nearOf(values, grid, isShaded);
       demand(own < CONTROL, `${engine}, control: ${mistake}, ${name}: ${percent(own)} of those in the shade, ${percent(all)} of all`);
