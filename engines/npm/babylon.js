@@ -15,7 +15,6 @@ import { VertexBuffer } from '@babylonjs/core/Buffers/buffer.js';
 import { Camera } from '@babylonjs/core/Cameras/camera.js';
 import { BoundingInfo } from '@babylonjs/core/Culling/boundingInfo.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
-import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
 import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
 import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
@@ -23,12 +22,13 @@ import { Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js'
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
+import { darkenLights, withoutComments } from './babylon_darken.js';
 import { forwardOf } from './babylon_view.js';
 import { DAY, DEFAULTS, SKY, addSoftSettings, cloudDefaults, impostorDefaults, impostorSettingsOf, settingsOf, shadowValues, skyDefaults,
   softValues, sunDefaults, switchPixelsOf } from './asset.js';
 import { pixelsAcross, shownLevels, stretchedSides } from './levels.js';
-import { CAST_SHADOW, CHANNELS, IMPOSTOR_PIXEL, IMPOSTOR_SQUARE, IMPOSTOR_VARYINGS, LAMPS, PIXEL_COLOR, SKY_COLOR, SOFT, TONE, VARYINGS,
-  vertexLight, writeVaryings } from './shaders.js';
+import { CAST_SHADOW, CHANNELS, IMPOSTOR_PIXEL, IMPOSTOR_SQUARE, IMPOSTOR_VARYINGS, LAMPS, PIXEL_COLOR, SHADE, SKY_COLOR, SOFT, TONE,
+  VARYINGS, vertexLight, writeVaryings } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? VertexBuffer.UVKind : `${VertexBuffer.UVKind}${n + 1}`;
@@ -54,6 +54,14 @@ ${vertexLight()}
 #ifdef LAMPS
   ${LAMPS}
 #endif
+#ifdef CLOUD_SHADE
+  ${SHADE}
+  #ifdef INSTANCES
+    attribute vec3 cloud_shade_shift;
+  #else
+    uniform vec3 cloud_shade_shift;
+  #endif
+#endif
 void main() {
   vec3 positionUpdated = position;
   vec3 normalUpdated = normal;
@@ -65,6 +73,9 @@ void main() {
   gl_Position = viewProjection * worldPos;
   gl_Position.xy += painted_place * gl_Position.w;
   ${writeVaryings(names, 'normalUpdated', 'finalWorld', 'worldPos.xyz')}
+  #ifdef CLOUD_SHADE
+    cloud_light.x *= shadePastOthers(worldPos.xyz, cloud_shade_shift);
+  #endif
   cloud_view = worldPos.xyz * is_perspective - eye;
   #include<fogVertex>
 }
@@ -184,9 +195,6 @@ void main() {
 
 const colorOf = rgb => Color3.FromArray(rgb);
 
-// Babylon.js takes a semicolon of a comment for the end of a line.
-const withoutComments = shader => shader.replace(/ *\/\/.*$/gm, '');
-
 /** @typedef {import('./babylon.d.ts').CloudSettings} Settings */
 
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
@@ -249,16 +257,17 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['depthTexture']} */ depthTexture;
   switchPixels = 0;  // of a level of detail
   /** @type {any} */ painted = null;  // what PaintedClouds needs while it draws
+  /** @type {any} */ shade = null;
 
   constructor(name, scene, parameters = {}) {
     const { uvSets = DEFAULTS.uvSets, ...others } = parameters, names = uvSets.map(nameOfSet);
     super(name, scene, cloudVertex(names), CLOUD_FRAGMENT, {
-      attributes: ['position', 'normal', ...names], defines: ['NORMAL'],
+      attributes: ['position', 'normal', ...names, 'cloud_shade_shift'], defines: ['NORMAL'],
       uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color',
         'ambient_sky', 'ambient_ground', 'shape', 'extinction', 'density_max',
         'half_lambert', 'volume_gain', 'flipped', 'phase', 'forward', 'painted_range', 'painted_place', 'has_solid',
-        ...Object.keys(softValues({}))],
-      samplers: ['solid_depth'],
+        'cloud_shade_rows', 'cloud_shade_shift', ...Object.keys(softValues({}))],
+      samplers: ['solid_depth', 'cloud_shades'],
     });
     Object.assign(this, cloudDefaults(colorOf), { uvSets }, others);
   }
@@ -280,10 +289,19 @@ export class CloudMaterial extends SunlitMaterial {
   get soft() { return this.options.defines.includes('SOFT'); }
   set soft(is_soft) { this.options.defines = [...this.options.defines.filter(word => word !== 'SOFT'), ...is_soft ? ['SOFT'] : []]; }
 
+  // The CloudShade that shades the clouds of the material; null: none does.
+  get cloudShade() { return this.shade; }
+  set cloudShade(shade) {
+    this.shade = shade;
+    this.options.defines = [...this.options.defines.filter(word => word !== 'CLOUD_SHADE'), ...shade ? ['CLOUD_SHADE'] : []];
+  }
+
   bind(world, mesh, effectOverride, subMesh) {
     super.bind(world, mesh, effectOverride, subMesh);
     // Meshes that follow each other share the other uniforms.
-    if (this.soft) (effectOverride ?? subMesh?.effect ?? this.getEffect()).setArray2('shown', mesh?.metadata?.cloudShown ?? [0, 1]);
+    const effect = effectOverride ?? subMesh?.effect ?? this.getEffect();
+    if (this.soft) effect.setArray2('shown', mesh?.metadata?.cloudShown ?? [0, 1]);
+    this.shade?.bind(effect, subMesh?.getMesh() ?? mesh);
   }
 
   writeUniforms() {
@@ -521,48 +539,16 @@ export class CloudShadow {
     return new CloudShadow(texture, await answer.json(), strength);
   }
 
-  // A StandardMaterial or a PBRMaterial gets the shadow: its direct light is darkened.
+  // A StandardMaterial or a PBRMaterial gets the shadow: its direct light is darkened. The frame is in the axes of glTF, which a
+  // left-handed scene mirrors.
   darken(material) {
-    this.plugin = new CloudShadowPlugin(material, this);
-    return material;
-  }
-}
-
-// The frame is in the axes of glTF, which a left-handed scene mirrors.
-const SHADOW_UNIFORMS = ['shadow_origin', 'shadow_right', 'shadow_up', 'shadow_to_sun', 'shadow_share', 'shadow_mirror'];
-
-class CloudShadowPlugin extends MaterialPluginBase {
-  constructor(material, shadow) {
-    super(material, 'CloudShadow', 200, { CLOUD_SHADOW: false });
-    this.shadow = shadow;
-    this._enable(true);
-  }
-
-  getClassName() { return 'CloudShadowPlugin'; }
-  prepareDefines(defines) { defines.CLOUD_SHADOW = true; }
-  getSamplers(samplers) { samplers.push('cloud_shadow'); }
-  getUniforms() { return { ubo: [], externalUniforms: SHADOW_UNIFORMS }; }
-
-  bindForSubMesh(_buffer, scene, _engine, subMesh) {
-    const { effect } = subMesh, { frame, shadowStrength, texture } = this.shadow;
-    for (const [name, value] of Object.entries(shadowValues(frame, shadowStrength))) effect.setFloat3(name, ...value);
-    effect.setFloat3('shadow_mirror', scene.useRightHandedSystem ? 1 : -1, 1, 1);
-    effect.setTexture('cloud_shadow', texture);
-  }
-
-  getCustomCode(type) {
-    if (type !== 'fragment') return null;
-    return {
-      CUSTOM_FRAGMENT_DEFINITIONS: withoutComments(`#ifdef CLOUD_SHADOW\n${CAST_SHADOW}\nuniform vec3 shadow_mirror;\n#endif`),
-      '!aggShadow\\s*=\\s*aggShadow\\s*/\\s*numLights;': `aggShadow = aggShadow / numLights;
-        #ifdef CLOUD_SHADOW
-          float cloud_shade = castShadow(shadow_mirror * vPositionW);
-          diffuseBase *= cloud_shade;
-          #ifdef SPECULARTERM
-            specularBase *= cloud_shade;
-          #endif
-        #endif`,
-    };
+    const uniforms = ['shadow_origin', 'shadow_right', 'shadow_up', 'shadow_to_sun', 'shadow_share', 'shadow_mirror'];
+    return darkenLights(material, { name: 'cloud_shadow', text: `${CAST_SHADOW}\nuniform vec3 shadow_mirror;`,
+      share: 'castShadow(shadow_mirror * vPositionW)', uniforms, texture: 'cloud_shadow', bind: (effect, scene) => {
+        for (const [name, value] of Object.entries(shadowValues(this.frame, this.shadowStrength))) effect.setFloat3(name, ...value);
+        effect.setFloat3('shadow_mirror', scene.useRightHandedSystem ? 1 : -1, 1, 1);
+        effect.setTexture('cloud_shadow', this.texture);
+      } });
   }
 }
 

@@ -100,6 +100,19 @@ float shadePastOthers(vec3 place, vec3 shift) {
 }
 `;
 
+// The share of the sun's light that comes to a place below all clouds.
+export const GROUND_SHADE = `
+#include "cloud_shade.glsl"
+uniform highp sampler2D cloud_ground;
+uniform vec4 cloud_shade_rows[3];
+uniform float cloud_shade_strength;
+
+float shadeOfClouds(vec3 place) {
+  vec2 at = shadeGroundPlace(place, cloud_shade_rows[0], cloud_shade_rows[1]) / vec2(textureSize(cloud_ground, 0));
+  return 1.0 - cloud_shade_strength * (1.0 - texture(cloud_ground, at).r);
+}
+`;
+
 // The light of LAMPS lamps.
 export const LAMPS = `
 #include "lamp.glsl"

@@ -130,7 +130,7 @@ float2 light(float2 first, float2 second) {
   return shares;
 }`;
     return {
-      vector: vertexHlsl(functions, 'float3', 'objectLobe(first, second).xyz * objectLobe(first, second).w'),
+      vector: vertexHlsl(functions, 'float3', 'objectLobe(first, second, 0.0).xyz * objectLobe(first, second, 0.0).w'),
       light: vertexHlsl(functions, 'float2', 'light(first, second)'),
       fixed: [false, false],
     };

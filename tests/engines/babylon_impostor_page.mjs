@@ -25,7 +25,7 @@ export function describe({ meshes, material }) {
   return { types: meshes.map(mesh => mesh.material.getClassName()), exponent, extinction, ofVolume, center, radius, atlas };
 }
 
-// The impostor at places of glTF's axes, each a matrix by columns, as instances or as thin instances.
+// The mesh at places of glTF's axes, each a matrix by columns, as clones, as instances or as thin instances.
 export function place(subject, matrices, kind) {
   const { mesh, root, shown } = subject;
   for (const one of shown.splice(0)) one.dispose();
@@ -40,7 +40,8 @@ export function place(subject, matrices, kind) {
     return;
   }
   for (const one of inWorld) {
-    const copy = mesh.clone('copy', null);
+    const copy = kind === 'instances' ? mesh.createInstance('copy') : mesh.clone('copy', null);
+    copy.parent = null;
     copy.isVisible = true;
     copy.freezeWorldMatrix(one);
     copy.getBoundingInfo().update(one);

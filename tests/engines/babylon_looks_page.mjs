@@ -17,6 +17,7 @@ import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import { CloudLevels, CloudMaterial, CloudShadow } from 'cloudbake-materials/babylon';
 import { PaintedClouds } from 'cloudbake-materials/babylon/painted';
+import { CloudShade } from 'cloudbake-materials/babylon/shade';
 import { changesOf } from './changes.mjs';
 import { canvasOf, colorOf, draw, engineOf, nextFrame, ready } from './babylon_page.mjs';
 
@@ -86,7 +87,14 @@ export async function drawFlat({ size, fov, triangle: { places, normals, lobe },
   return values;
 }
 
-export async function shadowAt({ picture, strength, places, sun, physical }) {
+// The shade of the grid of a cloud.
+async function shadeOfCloud(file, scene, sun) {
+  const { meshes: [root] } = await LoadAssetContainerAsync(file, scene), shade = new CloudShade(scene).add(root);
+  shade.update(new Vector3(...sun));
+  return shade;
+}
+
+export async function shadowAt({ picture, cloud, strength, places, sun, physical }) {
   const ratio = [];
   for (const shaded of [false, true]) {
     const size = [65, 65], { scene, eye } = sceneOf(size, 60), floor = CreateGround('floor', { width: 50, height: 50 }, scene);
@@ -94,7 +102,7 @@ export async function shadowAt({ picture, strength, places, sun, physical }) {
     const look = physical ? { metallic: 0, roughness: 1 } : { specularColor: Color3.Black() };
     floor.material = Object.assign(new Material('floor', scene), look);
     light.intensity = 0.5;
-    if (shaded) (await CloudShadow.load(picture, scene, strength)).darken(floor.material);
+    if (shaded) (await (cloud ? shadeOfCloud(cloud, scene, sun) : CloudShadow.load(picture, scene, strength))).darken(floor.material);
     const values = [];
     for (const [x, y, z] of places) {
       floor.position.y = y;

@@ -118,9 +118,9 @@ async function inBabylon(page, address, extinction) {
     demand(String(loaded.types) === 'ImpostorMaterial' && loaded.extinction === extinction, `Babylon.js reads ${JSON.stringify(loaded)}`);
     for (const [name, clouds] of Object.entries(CASES)) {
       const { view, truth } = await subjectOf(page, clouds, VIEWS[0], extinction);
-      await place(page, [], 'instances');
+      await place(page, [], 'clones');
       const without = await draw(page, view);
-      await place(page, clouds, 'instances');
+      await place(page, clouds, 'clones');
       const values = await draw(page, view), inside = insideOf(values, without);
       const all = compare(bits(values), truth), own = compare(bits(values), truth, inside);
       demand(all.near >= NEAR && own.near >= NEAR_IN_CLOUDS[name] && own.all > 1000,
@@ -129,7 +129,7 @@ async function inBabylon(page, address, extinction) {
     }
     // Thin instances are drawn in their order: the far ones first.
     const { view } = await subjectOf(page, SEVERAL, VIEWS[0], extinction), far = ({ position: [, , z] }) => z;
-    await place(page, SEVERAL, 'instances');
+    await place(page, SEVERAL, 'clones');
     const nodes = await draw(page, view);
     await place(page, [...SEVERAL].sort((a, b) => far(a) - far(b)), 'thin instances');
     const off = compare(await draw(page, view), nodes).largest;

@@ -186,17 +186,17 @@ async function shade(page, engine) {
 }
 
 // Below the cloud the grid's last slice is the picture that `cloudbake shadow` draws.
-async function shadeOnTheGround(page, engine) {
+async function shadeOnTheGround(page, engine, more = {}) {
   const side = 48;
   run('shadow', 'cloud.glb', '--sun', '120,50', '--size', String(side), '-o', 'cast.png');
   const frame = JSON.parse(readFileSync(join(folder, 'cast.json'), 'utf8')), values = await pngValues(page, join(folder, 'cast.png'));
   const pixels = Array.from({ length: 144 }, (_, i) => [4 * (i % 12) + 2, 4 * Math.floor(i / 12) + 2]);
   const wanted = pixels.map(([x, y]) => values[3 * (y * side + x)] / 255);
   const places = pixels.map(([x, y]) => inFrame(frame, (x + 0.5) / side, 1 - (y + 0.5) / side, frame.bottom - 1));
-  const found = await ask(page, 'shadowAt', { cloud: 'cloud.glb', sun: frame.to_sun, places });
+  const found = await ask(page, 'shadowAt', { cloud: 'cloud.glb', sun: frame.to_sun, places, ...more });
   const rms = Math.sqrt(found.reduce((sum, share, i) => sum + (share - wanted[i]) ** 2, 0) / found.length);
-  demand(rms < 0.08 && Math.min(...found) < 0.3, `${engine}: the shade of a grid on a floor is the shadow's picture, ` +
-    `rms ${rms.toFixed(3)}`);
+  demand(rms < 0.08 && Math.min(...found) < 0.3, `${engine}${more.physical ? ', PBRMaterial' : ''}: the shade of a grid on a floor is ` +
+    `the shadow's picture, rms ${rms.toFixed(3)}`);
 }
 
 // A picture of four shares of light, and the frame of a sun from a side; the floor is in it, beside it, and above the cloud's bottom.
@@ -237,11 +237,9 @@ await testPage(folder, async page => {
     await fades(page, engine);
     await shadowOfTheCloud(page, engine);
     await shadows(page, engine);
-    if (engine === 'three.js') {
-      await shade(page, engine);
-      await shadeOnTheGround(page, engine);
-    }
-    if (engine === 'Babylon.js') await shadows(page, engine, { physical: true });
+    await shadeOnTheGround(page, engine);
+    if (engine === 'three.js') await shade(page, engine);
+    else for (const test of [shadows, shadeOnTheGround]) await test(page, engine, { physical: true });
     await nearPainted(page, engine);
     await levels(page, engine);
   }

@@ -22,6 +22,7 @@ const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'thre
   'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/three/painted': 'cloudbake-materials/three_painted.js',
   'cloudbake-materials/three/shade': 'cloudbake-materials/three_shade.js',
   'cloudbake-materials/babylon/painted': 'cloudbake-materials/babylon_painted.js',
+  'cloudbake-materials/babylon/shade': 'cloudbake-materials/babylon_shade.js',
   'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
 
 // Serves the folder, and the pages beside this file.

@@ -6,6 +6,7 @@ import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { CloudLevels, CloudMaterial, CloudShadow, CloudSky, CloudbakeLoaderPlugin, ImpostorMaterial, SkyMaterial, impostorSquare,
   sortImpostors } from 'cloudbake-materials/three';
 import { PaintedClouds } from 'cloudbake-materials/three/painted';
+import { CloudShade } from 'cloudbake-materials/three/shade';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { DirectionalLight as BabylonLight } from '@babylonjs/core/Lights/directionalLight.js';
@@ -15,6 +16,7 @@ import type { Scene as BabylonScene } from '@babylonjs/core/scene.js';
 import type { Camera } from '@babylonjs/core/Cameras/camera.js';
 import type { StandardMaterial } from '@babylonjs/core/Materials/standardMaterial.js';
 import { PaintedClouds as BabylonPainted } from 'cloudbake-materials/babylon/painted';
+import { CloudShade as BabylonShade } from 'cloudbake-materials/babylon/shade';
 import * as babylon from 'cloudbake-materials/babylon';
 
 export async function inThree(scene: Scene, light: DirectionalLight): Promise<CloudMaterial> {
@@ -81,6 +83,22 @@ export async function softly(scene: Scene, loader: GLTFLoader, material: CloudMa
   shadow.shadowStrength = 0.8;
   shadow.update();
   return shadow.darken(new MeshStandardMaterial());
+}
+
+export function shaded(scene: Scene, sun: Vector3, ground: MeshStandardMaterial): CloudShade {
+  const shade = new CloudShade({ strength: 0.9 }).add(scene).remove(new Mesh());
+  shade.shadeStrength = shade.darken(ground).roughness;
+  shade.update(sun);
+  shade.dispose();
+  return shade;
+}
+
+export function shadedInBabylon(scene: BabylonScene, { meshes: [root] }: AssetContainer, ground: StandardMaterial): BabylonShade {
+  const shade = new BabylonShade(scene, { strength: 0.9 }).add(root!).remove(root!);
+  shade.shadeStrength = shade.darken(ground).alpha;
+  shade.update(new BabylonVector3(0, 1, 0));
+  shade.dispose();
+  return shade;
 }
 
 export async function paintedInBabylon(scene: BabylonScene, camera: Camera, ground: StandardMaterial): Promise<BabylonPainted> {
