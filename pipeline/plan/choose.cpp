@@ -1,7 +1,6 @@
 // With a price λ of an error, each cloud takes the way of the least cost + λ · area · change². That makes the cheapest plan of all that
 // have the same sum of errors, and the error falls as λ grows, so that λ is found by bisection (H. Everett, "Generalized Lagrange
-// multiplier method", 1963). Files and draws are shared by clouds: ways are left out one after the other for as long as all of it becomes
-// cheaper.
+// multiplier method", 1963). Files and draws are shared by clouds: ways are left out for as long as all of it becomes cheaper.
 #include "pipeline/plan/choose.h"
 
 #include <algorithm>
@@ -20,6 +19,8 @@ constexpr double kMostOfOneCloud = 3;
 struct Weights {
   double vertex = 1, draw = kVerticesPerDraw, byte = 1 / kBytesPerVertex;
   double of(const PlanCost& cost) const { return vertex * cost.vertices + draw * cost.draws + byte * cost.bytes; }
+  // The mean counts too, because the worst picture alone does not show that others become cheaper.
+  double of(const PlannedWays& plan) const { return (of(plan.cost) + of(plan.mean)) / 2; }
 };
 
 // The ways that may be used, by asset.
@@ -89,7 +90,7 @@ class Chooser {
       sizes[own.back()] = kLargestSwitch;
     }
     std::vector<std::vector<bool>> used;
-    for (const std::vector<DrawnWay>& ways : assets_) used.emplace_back(ways.size());
+    for (size_t asset = 0; asset < assets_.size(); ++asset) used.emplace_back(assets_[asset].size())[steps[asset].back()] = true;
     for (const ViewCounts& view : views_) {
       double vertices = 0, draws = 0, squares = 0, area = 0;
       for (size_t asset = 0; asset < assets_.size(); ++asset) {
@@ -106,6 +107,8 @@ class Chooser {
       }
       plan.cost.vertices = std::max(plan.cost.vertices, vertices);
       plan.cost.draws = std::max(plan.cost.draws, draws);
+      plan.mean.vertices += vertices / double(views_.size());
+      plan.mean.draws += draws / double(views_.size());
       plan.changes.push_back(area > 0 ? std::sqrt(squares / area) : 0);
       plan.change = std::max(plan.change, plan.changes.back());
     }
@@ -115,6 +118,7 @@ class Chooser {
           plan.cost.bytes += double(assets_[asset][way].bytes);
         else
           plan.switch_pixels[asset][way] = 0;
+    plan.mean.bytes = plan.cost.bytes;
     return plan;
   }
 
@@ -132,15 +136,26 @@ PlannedWays cheapest(const Chooser& chooser, std::span<const std::vector<DrawnWa
   for (;;) {
     std::optional<PlannedWays> better;
     Kept with_less;
-    for (size_t asset = 0; asset < assets.size(); ++asset)
+    const auto consider = [&](size_t asset, std::vector<bool> ways) {
+      const size_t finest = size_t(std::find(ways.begin(), ways.end(), true) - ways.begin());
+      if (assets[asset][finest].is_picture) return;
+      Kept less = kept;
+      less[asset] = std::move(ways);
+      PlannedWays plan = chooser.withWays(less, weights);
+      if (plan.change > change || weights.of(plan) >= weights.of(better ? *better : best)) return;
+      better = std::move(plan), with_less = std::move(less);
+    };
+    // Without a way, or with this way alone.
+    for (size_t asset = 0; asset < assets.size(); ++asset) {
+      const auto count = std::count(kept[asset].begin(), kept[asset].end(), true);
       for (size_t way = 0; way < assets[asset].size(); ++way) {
-        if (!kept[asset][way] || std::count(kept[asset].begin(), kept[asset].end(), true) == 1) continue;
-        Kept less = kept;
-        less[asset][way] = false;
-        PlannedWays plan = chooser.withWays(less, weights);
-        if (plan.change > change || weights.of(plan.cost) >= weights.of((better ? *better : best).cost)) continue;
-        better = std::move(plan), with_less = std::move(less);
+        if (!kept[asset][way] || count == 1) continue;
+        std::vector<bool> without = kept[asset], alone(assets[asset].size());
+        without[way] = false, alone[way] = true;
+        consider(asset, std::move(without));
+        if (count > 2) consider(asset, std::move(alone));
       }
+    }
     if (!better) return best;
     best = std::move(*better), kept = std::move(with_less);
   }

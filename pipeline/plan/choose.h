@@ -17,6 +17,7 @@ struct DrawnWay {
   size_t vertices = 0;
   uint64_t bytes = 0;               ///< of its file
   std::vector<SizeChange> changes;  ///< against the full asset, as of Popping; empty: none
+  bool is_picture = false;          ///< an impostor, which casts no shadow: an asset has a mesh beside it
 };
 
 /// Sizes of clouds, in pixels along the longest side (preview/mesh_clouds/levels.h), are counted in steps of a fourth of an octave
@@ -48,10 +49,12 @@ struct PlanCost {
 /// processor, in which a graphics card transforms some thousands of vertices.
 inline constexpr double kVerticesPerDraw = 1000, kBytesPerVertex = 100;
 
-/// A plan. switch_pixels[a][w]: the most pixels at which way w of asset a is drawn, falling with w; 0: never.
+/// A plan. switch_pixels[a][w]: the most pixels at which way w of asset a is drawn, falling with w; 0: never. The finest way with a size
+/// is drawn at all larger ones too, and its file is needed wherever the cloud is.
 struct PlannedWays {
   std::vector<std::vector<int>> switch_pixels;
   PlanCost cost;
+  PlanCost mean;                ///< over the pictures
   double change = 0;            ///< in the worst picture, as the changes of the ways say
   std::vector<double> changes;  ///< of each picture
 };

@@ -58,6 +58,12 @@ struct View {
   Camera camera;
 };
 
+// One at one of the hours.
+struct Picture {
+  size_t view = 0, hour = 0;
+  auto operator<=>(const Picture&) const = default;
+};
+
 std::vector<Vec3> stopsOn(std::span<const Vec3> path) {
   float whole = 0;
   for (size_t i = 1; i < path.size(); ++i) whole += length(path[i] - path[i - 1]);
@@ -109,12 +115,16 @@ class Planner {
   ScenePlan plan(BakeReport& report, Stopwatch& watch) {
     chooseAndCompare();
     watch.lap(report.seconds, "choose");
-    if (settings_.plan.measure) {
-      measured_ = {};
-      for (size_t view = 0; view < views_.size(); ++view)
-        for (size_t hour = 0; hour < hours_.size(); ++hour) measured_.push_back(changeOf(view, hour));
-      watch.lap(report.seconds, "measure");
+    // A picture that turns out to change too much is watched from then on.
+    constexpr int kMostWatched = 8;
+    for (int i = 0; settings_.plan.measure && i <= kMostWatched; ++i) {
+      if (const Picture worst = measureAll(); measured_[worst.view * hours_.size() + worst.hour] > settings_.plan.change)
+        watched_.push_back(worst);
+      else
+        break;
+      if (i < kMostWatched) chooseAndCompare();
     }
+    if (settings_.plan.measure) watch.lap(report.seconds, "measure");
     requireBudget();
     ScenePlan scene;
     addFiles(scene);
@@ -226,10 +236,8 @@ class Planner {
     std::optional<std::pair<double, double>> within, beyond;  // corrections and what was measured with them
     for (int round = 0; round < kRounds; ++round) {
       take(chooseWays(drawn_, counts_, budget, pixels(), correction));
-      measured_.clear();
-      for (const auto& [view, hour] : worstPictures()) measured_.push_back(changeOf(view, hour));
+      compare();
       const double measured = *std::max_element(measured_.begin(), measured_.end());
-                   plan_.cost.vertices);
       const bool is_within = measured <= change;
       if (is_within && (!accepted || plan_.cost.vertices < accepted->cost.vertices)) accepted = plan_, accepted_changes = measured_;
       (is_within ? within : beyond) = {correction, measured};
@@ -248,25 +256,44 @@ class Planner {
     }
     if (!accepted) {  // the full assets change nothing but what packing does
       take(chooseWays(drawn_, counts_, budget, pixels(), 1e6));
-      measured_.clear();
-      for (const auto& [view, hour] : worstPictures()) measured_.push_back(changeOf(view, hour));
+      compare();
       return;
     }
     take(std::move(*accepted));
     measured_ = accepted_changes;
   }
 
-  // The pictures whose changes are said to be largest, each at another hour.
-  std::vector<std::pair<size_t, size_t>> worstPictures() const {
+  // Compares all pictures, and returns the one that changes most.
+  Picture measureAll() {
+    measured_.clear();
+    Picture worst;
+    double most = -1;
+    for (size_t view = 0; view < views_.size(); ++view)
+      for (size_t hour = 0; hour < hours_.size(); ++hour) {
+        measured_.push_back(changeOf({view, hour}));
+        if (measured_.back() > most) most = measured_.back(), worst = {view, hour};
+      }
+    return worst;
+  }
+
+  void compare() {
+    measured_.clear();
+    for (const Picture& picture : worstPictures()) measured_.push_back(changeOf(picture));
+  }
+
+  // The pictures whose changes are said to be largest, each at another hour, and those that are watched.
+  std::vector<Picture> worstPictures() const {
     std::vector<size_t> order(views_.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return plan_.changes[a] > plan_.changes[b]; });
-    std::vector<std::pair<size_t, size_t>> pictures;
+    std::vector<Picture> pictures;
     const size_t views = views_.size(), count = std::min(kPictures, views * hours_.size());
     for (size_t i = 0; pictures.size() < count; ++i) {
-      const std::pair<size_t, size_t> picture{order[i % views], (i % views + i / views) % hours_.size()};
+      const Picture picture{order[i % views], (i % views + i / views) % hours_.size()};
       if (std::find(pictures.begin(), pictures.end(), picture) == pictures.end()) pictures.push_back(picture);
     }
+    for (const Picture& picture : watched_)
+      if (std::find(pictures.begin(), pictures.end(), picture) == pictures.end()) pictures.push_back(picture);
     return pictures;
   }
 
@@ -324,10 +351,10 @@ class Planner {
     return drawn;
   }
 
-  SceneFile sceneOf(size_t view, size_t hour) const {
-    SceneFile scene = sceneAt(scenery_, momentOf(hours_[hour]));
-    if (views_[view].place) {
-      scene.camera = views_[view].place;
+  SceneFile sceneOf(const Picture& picture) const {
+    SceneFile scene = sceneAt(scenery_, momentOf(hours_[picture.hour]));
+    if (const auto& place = views_[picture.view].place) {
+      scene.camera = place;
       scene.camera_path = false;
       scene.camera_distance.reset();
       scene.camera_roll_degrees = 0;
@@ -337,10 +364,10 @@ class Planner {
   }
 
   // The rms of the 8-bit values over the pixels that show clouds.
-  double changeOf(size_t view, size_t hour) {
-    const SceneFile scene = sceneOf(view, hour);
-    const auto [known, is_new] = full_.try_emplace({view, hour});
-    const std::vector<Instance> instances = seenBy(views_[view]);
+  double changeOf(const Picture& picture) {
+    const SceneFile scene = sceneOf(picture);
+    const auto [known, is_new] = full_.try_emplace(picture);
+    const std::vector<Instance> instances = seenBy(views_[picture.view]);
     if (is_new) known->second = drawn(scene, instances);
     Drawn other = drawn(scene, planned(instances));
     for (size_t i = 0; i < other.clouds.size(); ++i) other.clouds[i] |= known->second.clouds[i];
@@ -506,7 +533,8 @@ class Planner {
   PlannedWays plan_;
   std::vector<std::vector<const BakedMesh*>> levels_;  // of each asset, as plan_ says
   std::vector<double> measured_;
-  std::map<std::pair<size_t, size_t>, Drawn> full_;  // by view and hour
+  std::vector<Picture> watched_;
+  std::map<Picture, Drawn> full_;
 };
 
 }  // namespace

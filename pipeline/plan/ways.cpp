@@ -161,7 +161,9 @@ std::vector<MadeWay> unpackedWays(const std::filesystem::path& file, const std::
 
 }  // namespace
 
-DrawnWay MadeWay::drawn() const { return {mesh.impostor ? 4 : mesh.surface.positions.size(), glb.size(), changes}; }
+DrawnWay MadeWay::drawn() const {
+  return {mesh.impostor ? 4 : mesh.surface.positions.size(), glb.size(), changes, mesh.impostor != nullptr};
+}
 
 std::vector<MadeWay> makeWays(const std::filesystem::path& file, const std::string& glb, const WaysSettings& settings) {
   const CloudCache cache(cloudCacheFolder());

@@ -115,6 +115,7 @@ const std::vector<RuleCase>& ruleCases() {
   static const std::vector<RuleCase> cases{
       {"pack", 0, ": --attribute writes the lobes a second time", {"pack=8", "attribute"}, {{"pack=8"}, {"pack=16", "attribute"}}},
       {"frame", 0, " times --views is more than 16384", {"frame=1024", "views=17"}, {{"frame=1024", "views=16"}}, kImpostor},
+      {"path", 0, " and --region both place the camera", {"path=0,1,2:3,4,5", "region=0,0,0:1,1,1"}, {{"path=0,1,2:3,4,5"}}, kPlan},
       {"pack-as", 0, " needs --pack 8", {"pack-as=strip"}, {{"pack=8", "pack-as=strip"}}},
       {"method",
        0,

@@ -25,6 +25,15 @@ TEST(Popping, TheSameMeshChangesNothing) {
   EXPECT_EQ(switchPixels(changes[0]), kLargestSwitch);
 }
 
+TEST(Popping, BetweenSizesTheChangeIsAPowerOfTheSize) {
+  const std::vector<SizeChange> changes{{100, 8}, {25, 2}};
+  EXPECT_EQ(changeAt({}, 50), 0);
+  EXPECT_EQ(changeAt(changes, 1000), 8);
+  EXPECT_EQ(changeAt(changes, 100), 8);
+  EXPECT_NEAR(changeAt(changes, 50), 4, 1e-5F);
+  EXPECT_EQ(changeAt(changes, 10), 2);
+}
+
 TEST(Popping, GrowsWithTheSizeAndTheCoarsenessAtAnyScaleAndPlace) {
   const BakedMesh full = bakedBall(1, {}, 5);
   const BakedMesh levels[] = {bakedBall(1, {}, 3), bakedBall(1, {}, 2)};

@@ -64,6 +64,21 @@ TEST(ImpostorFile, ComesBackAsItWas) {
   EXPECT_EQ(files().glb, files().glb);
 }
 
+TEST(ImpostorFile, MayBeALevelOfDetail) {
+  Impostor impostor = someImpostor();
+  EXPECT_EQ(boxWithImpostor(impostor).info.input_hash, "abc");
+  EXPECT_EQ(decodeImpostor("a.glb", files().glb).info.level, 0);
+  impostor.info.level = 3, impostor.info.switch_pixels = 45, impostor.info.level_of = "def";
+  const std::string glb = encodeImpostor(impostor, {2, std::vector<uint8_t>(16, 100)}).glb;
+  const BakedMesh mesh = boxWithImpostor(decodeImpostor("a.glb", glb));
+  EXPECT_EQ(mesh.info.level, 3);
+  EXPECT_EQ(mesh.info.switch_pixels, 45);
+  EXPECT_EQ(mesh.info.input_hash, "def");
+  impostor.info.level = 9;
+  const std::string wrong = encodeImpostor(impostor, {2, std::vector<uint8_t>(16, 100)}).glb;
+  EXPECT_NE(errorOf([&] { decodeImpostor("a.glb", wrong); }).find("level is out of range"), std::string::npos);
+}
+
 TEST(ImpostorFile, IsKnownFromOtherFiles) {
   EXPECT_TRUE(isImpostor(files().glb));
   EXPECT_FALSE(isImpostor("nonsense"));
