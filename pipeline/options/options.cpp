@@ -43,10 +43,11 @@ void setLevels(S& settings, O option, V value) {
 
 // "change=1,vertices=200000".
 void setBudget(S& settings, O option, V value) {
+  constexpr const char* kWanted = "a list of change, vertices, bytes and draws, each with = and a number, such as change=2,draws=40";
   PlanSettings& plan = settings.plan;
   for (const std::string& one : readList(value)) {
     const size_t equals = one.find('=');
-    if (equals == std::string::npos) refuseValue(option, value, "a list such as change=2,vertices=200000,bytes=8000000,draws=40");
+    if (equals == std::string::npos) refuseValue(option, value, kWanted);
     const std::string key = one.substr(0, equals), number = one.substr(equals + 1);
     if (key == "change")
       plan.change = readNumber<double>(option, number, 0.1, 255);
@@ -57,7 +58,7 @@ void setBudget(S& settings, O option, V value) {
     else if (key == "draws")
       plan.draws = readNumber<double>(option, number, 1, kHuge);
     else
-      refuseValue(option, value, "a list of change, vertices, bytes and draws, each with = and a number");
+      refuseValue(option, value, kWanted);
   }
 }
 
@@ -83,12 +84,12 @@ std::vector<Vec3> readPlaces(O option, V value, const char* wanted) {
   return places;
 }
 void setPath(S& settings, O option, V value) {
-  constexpr const char* kWanted = "two or more places as X,Y,Z, joined by colons";
+  constexpr const char* kWanted = "two or more places of three numbers, X,Y,Z, joined by colons";
   settings.plan.path = readPlaces(option, value, kWanted);
   if (settings.plan.path.size() < 2) refuseValue(option, value, kWanted);
 }
 void setRegion(S& settings, O option, V value) {
-  constexpr const char* kWanted = "the low and the high corner of a box, X,Y,Z:X,Y,Z";
+  constexpr const char* kWanted = "the low and the high corner of a box, three numbers each: X,Y,Z:X,Y,Z";
   const std::vector<Vec3> corners = readPlaces(option, value, kWanted);
   if (corners.size() != 2) refuseValue(option, value, kWanted);
   const Vec3 low = corners[0], high = corners[1];

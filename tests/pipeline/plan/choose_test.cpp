@@ -108,8 +108,8 @@ TEST(ChooseWays, CostsLittleMoreThanTheBestOfAllPlans) {
 TEST(ChooseWays, LimitsOfCostCountMoreThanOtherCosts) {
   const auto assets = twoAssets();
   const PlannedWays free = chooseWays(assets, kViews, {3, {}, {}, {}}, kPixels);
-  const PlannedWays few_bytes = chooseWays(assets, kViews, {3, {}, 0.7 * free.cost.bytes, {}}, kPixels);
-  EXPECT_LE(few_bytes.cost.bytes, 0.7 * free.cost.bytes);
+  const PlannedWays few_bytes = chooseWays(assets, kViews, {3, {}, 0.9 * free.cost.bytes, {}}, kPixels);
+  EXPECT_LE(few_bytes.cost.bytes, 0.9 * free.cost.bytes);
   EXPECT_GT(few_bytes.cost.vertices, free.cost.vertices);
   EXPECT_LE(few_bytes.change, 3);
   const PlannedWays few_draws = chooseWays(assets, kViews, {3, {}, {}, 2.0}, kPixels);
