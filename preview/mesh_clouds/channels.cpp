@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <vector>
 
 #include "core/parallel.h"
 #include "preview/shading_math.h"
@@ -30,16 +32,20 @@ PixelBox cloudBox(const Image4& channels, float margin) {
 }
 
 float meanLongestSide(std::span<const Instance> instances) {
-  float sum = 0;
-  int count = 0;
-  for (const Instance& instance : instances) {
+  std::vector<std::optional<float>> sides(instances.size());
+  parallelFor(instances.size(), [&](size_t i) {
+    const Instance& instance = instances[i];
     if (instance.scattered) {
-      sum += instance.scattered->longest_side, ++count;
-      continue;
+      sides[i] = instance.scattered->longest_side;
+      return;
     }
     const Box box = drawnBox((instance.sized_as ? instance.sized_as : instance.mesh)->surface, instance.to_world);
-    if (!box.empty()) sum += box.longestSide(), ++count;
-  }
+    if (!box.empty()) sides[i] = box.longestSide();
+  });
+  float sum = 0;
+  int count = 0;
+  for (const std::optional<float>& side : sides)
+    if (side) sum += *side, ++count;
   return sum > 0 ? sum / float(count) : 1;
 }
 

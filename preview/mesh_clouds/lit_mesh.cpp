@@ -246,9 +246,12 @@ float worldExtinction(const Instance& instance, const LightSettings& light) {
 }
 
 Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
-  Box box;
+  std::vector<uint8_t> is_drawn(surface.positions.size());
   for (const Triangle& triangle : surface.triangles)
-    for (const uint32_t v : triangle) box.add(transformPoint(to_world, surface.positions[v]));
+    for (const uint32_t v : triangle) is_drawn[v] = 1;
+  Box box;
+  for (size_t v = 0; v < is_drawn.size(); ++v)
+    if (is_drawn[v]) box.add(transformPoint(to_world, surface.positions[v]));
   return box;
 }
 
