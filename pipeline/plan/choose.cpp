@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/portable_math.h"
+
 namespace cloudbake {
 
 namespace {
@@ -15,6 +17,8 @@ constexpr float kSmallest = 8;   // of the first step, pixels
 constexpr double kFilled = 0.5;  // of the square of the longest side is covered by a cloud
 // No cloud changes more than this many times as much as its picture may.
 constexpr double kMostOfOneCloud = 3;
+
+double squareOf(double x) { return x * x; }
 
 struct Weights {
   double vertex = 1, draw = kVerticesPerDraw, byte = 1 / kBytesPerVertex;
@@ -31,25 +35,24 @@ class Chooser {
   Chooser(std::span<const std::vector<DrawnWay>> assets, std::span<const ViewCounts> views, double change, double picture_pixels,
           double correction)
       : assets_(assets), views_(views), change_(change) {
-    for (size_t step = 0; step < kSizeSteps; ++step)
-      areas_[step] = std::min(picture_pixels, kFilled * std::pow(double(sizeOfStep(step)), 2));
+    for (size_t step = 0; step < kSizeSteps; ++step) areas_[step] = std::min(picture_pixels, kFilled * squareOf(double(sizeOfStep(step))));
     for (const std::vector<DrawnWay>& ways : assets)
       for (auto& errors = squares_.emplace_back(); const DrawnWay& way : ways) {
         auto& of_way = errors.emplace_back();
         for (size_t step = 0; step < kSizeSteps; ++step)
-          of_way[step] = std::pow(correction * double(changeAt(way.changes, sizeOfStep(step))), 2);
+          of_way[step] = squareOf(correction * double(changeAt(way.changes, sizeOfStep(step))));
       }
   }
 
   // The cheapest plan with these ways. The finest kept way is drawn at all sizes above those of the others.
   PlannedWays withWays(const Kept& kept, const Weights& weights) const {
-    constexpr double kLowest = -30, kHighest = 60;  // of log2 λ
+    constexpr double kLowest = -20, kHighest = 40;  // of ln λ
     constexpr int kHalvings = 40;
     double low = kLowest, high = kHighest;
-    PlannedWays best = at(kept, weights, std::exp2(high));
+    PlannedWays best = at(kept, weights, portableExp(high));
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = (low + high) / 2;
-      PlannedWays plan = at(kept, weights, std::exp2(middle));
+      PlannedWays plan = at(kept, weights, portableExp(middle));
       (plan.change <= change_ ? high : low) = middle;
       if (plan.change <= change_) best = std::move(plan);
     }
@@ -62,7 +65,7 @@ class Chooser {
   // Larger clouds have no coarser ways.
   Steps stepsOf(size_t asset, const std::vector<bool>& kept, const Weights& weights, double price) const {
     const std::vector<DrawnWay>& ways = assets_[asset];
-    const double most = std::pow(kMostOfOneCloud * change_, 2);
+    const double most = squareOf(kMostOfOneCloud * change_);
     const size_t finest = size_t(std::find(kept.begin(), kept.end(), true) - kept.begin());
     Steps steps{};
     size_t coarsest = ways.size() - 1;
@@ -164,7 +167,9 @@ PlannedWays cheapest(const Chooser& chooser, std::span<const std::vector<DrawnWa
 }  // namespace
 
 float sizeOfStep(size_t step) {
-  return step + 1 < kSizeSteps ? std::floor(kSmallest * std::exp2(float(step) / 4)) : std::numeric_limits<float>::infinity();
+  constexpr float kQuarters[] = {1, 1.18920712F, 1.41421356F, 1.68179283F};  // powers of 2
+  if (step + 1 == kSizeSteps) return std::numeric_limits<float>::infinity();
+  return std::floor(kSmallest * kQuarters[step % 4] * float(1U << step / 4));
 }
 
 size_t stepOfSize(float pixels) {

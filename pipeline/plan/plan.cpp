@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/portable_math.h"
 #include "io/file/own_file.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
@@ -187,8 +188,8 @@ class Planner {
     } else {
       const std::vector<Vec3> stops = settings_.plan.region ? stopsIn(*settings_.plan.region) : stopsOn(settings_.plan.path);
       const PictureSettings& view = own_.view;
-      const float tangent = std::tan(view.field_of_view_degrees * float(kPi / 360)) * float(view.width) / float(view.height);
-      const int headings = std::max(3, int(std::ceil(kPi / std::atan(double(tangent)))));
+      const double tangent = tanDegrees(double(view.field_of_view_degrees) / 2) * view.width / view.height;
+      const int headings = std::max(3, int(std::ceil(180 / atan2Degrees(tangent, 1))));
       for (const Vec3& stop : stops) {
         double rise = 0;
         size_t count = 0;
@@ -196,8 +197,7 @@ class Planner {
           const Vec3 there = extent.box.center() - stop;
           if (const float far = length(there); far > 0) rise += double(there.y / far), ++count;
         }
-        const float elevation =
-            count == 0 ? 0 : float(std::clamp(std::asin(std::clamp(rise / double(count), -1.0, 1.0)) * 180 / kPi, -60.0, 60.0));
+        const float elevation = count == 0 ? 0 : float(std::clamp(asinDegrees(std::clamp(rise / double(count), -1.0, 1.0)), -60.0, 60.0));
         for (int heading = 0; heading < headings; ++heading) {
           const CameraPlace place{stop, stop + directionFromAngles(360 * float(heading) / float(headings), elevation)};
           views.push_back({place, {place.look_from, place.look_at, view.field_of_view_degrees, view.width, view.height}});
@@ -246,12 +246,10 @@ class Planner {
       const double wanted = std::max(kAim * change, 1e-3), found = std::max(measured, 1e-3);
       correction *= std::clamp(found / wanted, 0.4, 4.0);
       if (within && beyond) {  // between the two, the change is a power of the correction
-        const auto [near, least] = *within;
-        const auto [far, most] = *beyond;
+        const double near = within->first, least = std::max(within->second, 1e-3);
+        const double far = beyond->first, most = beyond->second;
         if (near / far < kClose) break;
-        correction =
-            near *
-            std::pow(far / near, std::clamp(std::log(wanted / std::max(least, 1e-3)) / std::log(most / std::max(least, 1e-3)), 0.1, 0.9));
+        correction = near * portablePow(far / near, std::clamp(portableLog(wanted / least) / portableLog(most / least), 0.1, 0.9));
       }
     }
     if (!accepted) {  // the full assets change nothing but what packing does
