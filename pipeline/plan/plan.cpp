@@ -166,7 +166,7 @@ class Planner {
 
   void makeAllWays() {
     WaysSettings ways;
-    ways.change = settings_.plan.change;
+    ways.packs = settings_.plan.change >= double(kMostPackedChange);
     ways.half_lambert = own_.light.half_lambert;
     ways.impostors = own_.light.lamps.empty() && scenery_.scene.lightning.empty() && scenery_.scene.lamps.empty();
     ways.memory_limit = settings_.source.memory_limit;

@@ -30,7 +30,6 @@ namespace {
 constexpr double kLevelShares[] = {0.5, 0.25, 0.1, 0.04, 0.015};  // of the vertices
 constexpr size_t kFewestVertices = 40;                            // of a level
 constexpr int kImpostorViews = 9, kImpostorFrame = 32;
-constexpr double kPackedShare = 0.5;  // of the change that pictures may have
 
 Settings settingsOf(const std::filesystem::path& file, const WaysSettings& ways, bool is_packed) {
   Settings settings;
@@ -98,11 +97,11 @@ class Maker {
   }
 
   MadeWay finest() {
-    if (full_.info.density_max > 0) return {glb_, full_, {}};
+    if (full_.info.density_max > 0 || !settings_.packs) return {glb_, full_, {}};
     const GltfSettings gltf = settingsOf(file_, settings_, true).output.gltf;
     MadeWay packed =
         compared(encodeGlb(cloud_.sculpt, lobesPerPart(cloud_.sculpt, full_.lobes), full_.info, gltf, told_.warnings, full_.harmonics));
-    const auto is_slight = [&](const SizeChange& change) { return double(change.rms) <= kPackedShare * settings_.change; };
+    const auto is_slight = [&](const SizeChange& change) { return change.rms <= kMostPackedChange; };
     if (std::all_of(packed.changes.begin(), packed.changes.end(), is_slight)) return packed;
     return {glb_, full_, {}};
   }
@@ -168,7 +167,7 @@ DrawnWay MadeWay::drawn() const {
 std::vector<MadeWay> makeWays(const std::filesystem::path& file, const std::string& glb, const WaysSettings& settings) {
   const CloudCache cache(cloudCacheFolder());
   const std::string key =
-      hashBytes(fmt::format("{}ways {} {} {} {}", buildHash(), hashBytes(glb), settings.change, settings.half_lambert, settings.impostors));
+      hashBytes(fmt::format("{}ways {} {} {} {}", buildHash(), hashBytes(glb), settings.packs, settings.half_lambert, settings.impostors));
   if (const auto kept = cache.find(key)) return unpackedWays(file, *kept, settings.memory_limit);
   std::vector<MadeWay> ways = Maker(file, glb, settings).all();
   cache.add(key, packedWays(ways));

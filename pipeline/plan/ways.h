@@ -10,8 +10,11 @@
 
 namespace cloudbake {
 
+/// rms of 8-bit values, as of Popping.
+inline constexpr float kMostPackedChange = 1;
+
 struct WaysSettings {
-  double change = 2;       ///< that pictures may have: lobes are packed if that is much less
+  bool packs = true;       ///< whether lobes may be packed, where that changes pictures by kMostPackedChange at most
   float half_lambert = 1;  ///< f of lerp(f, 1, n·l/2 + ½) in the scene
   bool impostors = true;   ///< whether the scene can have them
   uint64_t memory_limit = 0;
