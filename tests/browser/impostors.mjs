@@ -1,6 +1,6 @@
 // Lobe impostors in the page of `cloudbake view` beside the pictures of `preview`.
 //   node tests/browser/impostors.mjs CLOUDBAKE SOURCE_FOLDER
-import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { SIZE, after, bare, canvasValues, demand, percent, pngValues, testFolder, testPage } from './browser.mjs';
@@ -57,6 +57,7 @@ async function same(page, name, words, bound = NEAR) {
 
 // --- Impostors as levels of detail ---
 
+const NEAR_BY_LEVELS = 0.999;
 const LEVEL_HEAD = `[picture]
 width = ${SIZE[0]}
 height = ${SIZE[1]}
@@ -70,10 +71,12 @@ const CAMERA = { position: [0, 3, 0], target: [0, 5, -60] };
 const cameraOf = zoom => `[camera]\ntarget = [${CAMERA.target}]\nfov = 50\nposition = [${
   CAMERA.position.map((x, i) => CAMERA.target[i] + (x - CAMERA.target[i]) / zoom)}]\n`;
 const ofLevels = (file, position, more = '') => `[[cloud]]\nfile = "${file}.glb"\nlevels = true\nposition = [${position}]\n${more}`;
-// Of the first asset there are a mesh, a level and three impostors, of the second one a mesh and an impostor; some behind others.
-const LEVELS = ofLevels('cloud', [-2, 2, -9]) + ofLevels('cloud', [5, 4, -20], 'rotation = [0, 40, 0]\n')
-  + ofLevels('cloud', [-3, 5, -62], 'scale = [-1, 0.8, 1]\n') + ofLevels('cloud', [4, 6, -70], 'rotation = [20, 50, 0]\n')
-  + ofLevels('cloud', [1, 5, -64]) + ofLevels('other', [6, 6, -30]) + ofLevels('other', [-12, 9, -80]);
+// Of the first asset there are a mesh, a level and three impostors, of the second one two impostors and a mesh beside the picture, which
+// shades them.
+const LEVELS = ofLevels('cloud', [-2, 2, -9]) + ofLevels('cloud', [4, 4, -13], 'rotation = [0, 40, 0]\n')
+  + ofLevels('cloud', [-7, 5, -52], 'scale = [-3, 2, 3]\n') + ofLevels('cloud', [5, 6, -70], 'rotation = [20, 50, 0]\nscale = 3\n')
+  + ofLevels('cloud', [1, 5, -64], 'scale = 2.5\n') + ofLevels('other', [6, 6, -30]) + ofLevels('other', [-12, 9, -80], 'scale = 2\n')
+  + ofLevels('other', [53, 29, -50], 'scale = 12\n');
 const field = (files, more) => `[[cloud]]\nfiles = [${files}]\n${more}rotation = [0, 30, 10]\nscale = [3, 2.5, 3]\n[cloud.scatter]
 low = [-60, 12, -60]\nhigh = [60, 18, 60]\ncount = 60\nsize = [0.7, 1.3]\ndrift = [2, 0, 1]\nhorizon_scale = 0.6\nhorizon_lower = 9\n`;
 const FIELD = field('"cloud.glb", "other.glb"', 'levels = true\n');
@@ -82,7 +85,7 @@ const LEVEL_SCENES = {
   'levels without shadows': BRIGHT + LEVELS,
   'levels that shade each other': LEVELS,
   'levels that shade each other by a grid': GRID + LEVELS,
-  'levels over ground': `${LEVELS}[terrain]\n`,
+  'levels in the shade of a slab': `${LEVELS}[[slab]]\n`,
   'levels of a field without shadows': BRIGHT + FIELD,
   'levels of a field, shaded by a grid': GRID + FIELD,
   'levels of a field in one fog, and clouds': `${light('cloud_shade = "grid"\nextinction = 0.4')}${FIELD}${LEVELS}`,
@@ -105,18 +108,18 @@ function countLevels() {
   const { renderer, renderer: { vertices, view, fields }, scene: { parts } } = window.viewer, ranges = vertices.rangesIn(view);
   const meshes = parts.filter(part => part.count && ranges.some(([first, count]) => part.first >= first && part.first < first + count));
   return {
-    impostors: renderer.impostors.seenBy(renderer).length, whole: meshes.filter(part => !part.level).length,
+    impostors: renderer.impostors?.seenBy(renderer).length ?? 0, whole: meshes.filter(part => !part.level).length,
     levels: meshes.filter(part => part.level).length, copies: fields?.groups.reduce((sum, { count }) => sum + count, 0) ?? 0,
   };
 }
 
 // The page's picture after a line of code beside preview's of the scene.
-async function sameAfter(page, name, code, words = []) {
-  run('preview', '--scene', 'scene.toml', ...words, '-o', 'truth.png');
+async function sameAfter(page, name, code, scene = 'scene.toml', words = []) {
+  run('preview', '--scene', scene, ...words, '-o', 'truth.png');
   const truth = await pngValues(page, join(folder, 'truth.png')), { near, largest } = compare(await after(page, code), truth);
   const drawn = await page.evaluate(countLevels);
-  demand(near >= NEAR, `${name}: ${percent(near)} of values are within 2 of preview's, the largest difference is ${largest}; ` +
-    Object.entries(drawn).map(([what, count]) => `${what} ${count}`).join(', '));
+  demand(near >= NEAR_BY_LEVELS, `${name}: ${percent(near)} of values are within 2 of preview's, the largest difference is ${largest}; ${
+    Object.entries(drawn).map(([what, count]) => `${what} ${count}`).join(', ')}`);
   return { truth, drawn };
 }
 
@@ -127,7 +130,7 @@ async function levels(page) {
     await open(page, 'page.html', bare);
     for (const time of name.includes('field') ? [0, 37.3] : [0]) {
       const { drawn: { impostors, whole, copies } } = await sameAfter(page, `${name} at ${time} s`,
-        `this.clock.time = ${time}; this.request()`, ['--time', String(time)]);
+        `this.clock.time = ${time}; this.request()`, 'scene.toml', ['--time', String(time)]);
       demand(impostors > 3 && (whole + copies > 1 || name === 'a field of impostors'), 'there are impostors and meshes');
     }
   }
@@ -154,6 +157,20 @@ async function movedLevels(page) {
   demand(unshaded < 0.998, `control: impostors without shade: ${percent(unshaded)}`);
   const meshes = await changed('for (const part of this.scene.parts) if (part.impostor) part.level.pixels = 0');
   demand(meshes < 0.99, `control: meshes in place of impostors: ${percent(meshes)}`);
+}
+
+// A scene as `cloudbake plan` writes it, whose clouds are a mesh and impostors.
+async function planned(page) {
+  const cloud = place => `[[cloud]]\nfile = "../cloud.glb"\n${place}\n`, placed = ['-3, 3, -6', '6, 4, -30', '-9, 8, -50'];
+  const all = placed.map(place => cloud(`position = [${place}]`)).join('') +
+    cloud('[cloud.scatter]\nlow = [-100, 20, -200]\nhigh = [100, 30, -50]\ncount = 60');
+  mkdirSync(join(folder, 'sky'), { recursive: true });
+  writeFileSync(join(folder, 'sky/scene.toml'), LEVEL_HEAD + GRID + cameraOf(1).replace('5, -60', '12, -60') + all);
+  run('plan', 'sky/scene.toml', '--budget', 'change=8', '-o', 'planned');
+  run('view', '--scene', 'planned/scene.toml', '-o', 'page.html');
+  await open(page, 'page.html', bare);
+  const { drawn: { impostors, whole } } = await sameAfter(page, 'a planned scene', 'this.request()', 'planned/scene.toml');
+  demand(impostors > 3 && whole > 0, 'a planned scene has impostors and meshes');
 }
 
 // --- The shader of the kit for Unity ---
@@ -293,9 +310,10 @@ await testPage(folder, async page => {
     writeFileSync(join(folder, 'scene.toml'), scene);
     await same(page, name, ['--scene', 'scene.toml'], name.endsWith('as published') ? NEAR_AS_PUBLISHED : NEAR);
   }
-  growWithLevels('cloud', 'mediocris', [110, 50]);
-  growWithLevels('other', 'humilis', [0, 60]);
+  growWithLevels('cloud', 'mediocris', [150, 80]);
+  growWithLevels('other', 'humilis', [0, 80]);
   await levels(page);
   await movedLevels(page);
+  await planned(page);
   await unity(page);
 });
