@@ -145,9 +145,9 @@ async function movedLevels(page) {
   let truth;
   for (const zoom of [0.5, 2, 1]) {
     writeFileSync(join(folder, 'scene.toml'), cameraOf(zoom) + scene);
-    const same = await sameAfter(page, `the camera at zoom ${zoom}`, `this.change({ zoom: ${zoom} })`);
-    truth = same.truth;
-    counts.push(same.drawn);
+    const moved = await sameAfter(page, `the camera at zoom ${zoom}`, `this.change({ zoom: ${zoom} })`);
+    truth = moved.truth;
+    counts.push(moved.drawn);
   }
   const [far, near, first] = counts;
   demand(first.whole > 0 && first.levels > 0 && first.impostors > 0 && far.impostors > first.impostors && near.impostors < first.impostors,
@@ -192,7 +192,8 @@ function unityStages() {
 // Runs in the page: draws its first impostor by those stages, in the space of Unity, which mirrors x and begins textures at the bottom, and
 // compares the shares of sun and sky, and the opacity, with the page's own channels. `info`: extras.cloudbake of the file.
 function unityOff({ vertex, fragment, info, mistake }) {
-  const { renderer: { gpu, view, look }, scene } = window.viewer, { gl } = gpu, [{ impostor: one }] = scene.parts, [width, height] = view.picture;
+  const { renderer: { gpu, view, look }, scene } = window.viewer, { gl } = gpu, [width, height] = view.picture;
+  const [{ impostor: one }] = scene.parts;
   const program = gl.createProgram();
   for (const [type, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
     const shader = gl.createShader(type);
