@@ -95,11 +95,17 @@ export class CloudShade {
    * @param {Float32Array} positions @param {Float32Array} shares
    */
   darken(part, whole, positions, shares) {
-    const { grid } = this, { first_vertex, vertices } = part;
-    if (!grid || this.kind === 'none' || !vertices) return;
-    const around = grid.nodesOf(cornersOf(positions, first_vertex, vertices)), own = this.numberOf(whole);
+    const { first_vertex, vertices } = part;
+    this.darkenPoints(positions, first_vertex, vertices, this.numberOf(whole), shares);
+  }
+
+  // The same for points, three numbers each, that belong to a cloud which has this number in the grid, or none.
+  darkenPoints(points, first, count, own, shares) {
+    const { grid } = this;
+    if (!grid || this.kind === 'none' || !count) return;
+    const around = grid.nodesOf(cornersOf(points, first, count));
     const block = own === undefined ? { ...around, shares: grid.sharesAround(around) } : grid.pastOthers(own);
-    grid.multiply(block, positions, first_vertex, vertices, shares);
+    grid.multiply(block, points, first, count, shares);
   }
 
   // The blocks of clouds of fields as packed() has them.

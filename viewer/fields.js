@@ -8,6 +8,7 @@ import { indexType, litBy, sampleOf } from './vertices.js';
 const NUMBERS = 6;  // of a cloud in field.clouds
 const PER_CLOUD = 11;  // floats on the graphics card: three vectors
 const LEAST_SHRINK = 1e-3;
+const CORNERS = 8;  // of the box of an impostor
 const LIGHT = { size: [1, 1, 1], numbers: Float32Array.of(1), shifts: new Float32Array(0) };  // of clouds in nobody's shade
 const STILL = [0, 0, 0];
 const NO_ROWS = [0, 1, 2].map(() => [0, 0, 0, 0]);
@@ -32,11 +33,29 @@ export function placeAt({ clouds, low, high, drift, fade, horizon_scale, horizon
   return { at, scale: clouds[first + 4] * Math.max(LEAST_SHRINK, shrink), angle, cosine: Math.cos(angle), sine: Math.sin(angle) };
 }
 
+// A vector that is turned about y, and a point that is made larger, turned and moved.
+const turned = (v, cosine, sine) => [cosine * v[0] + sine * v[2], v[1], cosine * v[2] - sine * v[0]];
+const moved = (point, { at, scale, cosine, sine }) => turned(point, cosine, sine).map((x, axis) => at[axis] + scale * x);
+
+/**
+ * The impostor of a cloud of a field.
+ * @param {PlacedImpostor} own before it is scattered @param {ReturnType<typeof placeAt>} placed @returns {PlacedImpostor}
+ */
+function scatteredImpostor(own, placed, has_world_extinction) {
+  const { scale, cosine, sine } = placed, columns = [0, 3, 6], columnsOf = matrix => columns.map(first => matrix.slice(first, first + 3));
+  const rows = [0, 1, 2].map(r => columns.map(first => own.to_own[first + r] / scale)).map(row => turned(row, cosine, sine));
+  return {
+    ...own, center: moved(own.center, placed), radius: own.radius * scale, extinction: own.extinction / (has_world_extinction ? 1 : scale),
+    to_own: [0, 1, 2].flatMap(c => rows.map(row => row[c])),
+    to_world: columnsOf(own.to_world).flatMap(column => turned(column, cosine, sine).map(x => scale * x)),
+  };
+}
+
 // A box around points that are made larger, turned and moved.
-function boxOf(points, { at, scale, cosine, sine }) {
+function boxOf(points, where) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (const [x, y, z] of points) {
-    const placed = [at[0] + scale * (cosine * x + sine * z), at[1] + scale * y, at[2] + scale * (cosine * z - sine * x)];
+  for (const point of points) {
+    const placed = moved(point, where);
     for (let axis = 0; axis < 3; ++axis) {
       low[axis] = Math.min(low[axis], placed[axis]);
       high[axis] = Math.max(high[axis], placed[axis]);
@@ -64,7 +83,9 @@ export class Fields {
     this.gpu = gpu;
     this.scene = scene;
     this.all = [];  // clouds at the time of the picture
-    this.groups = [];  // the clouds that are drawn, by part: { part, first, count }
+    this.groups = [];  // the clouds that are drawn as meshes, by part: { part, first, count }
+    /** Those that are drawn as impostors. @type {DrawnImpostor[]} */
+    this.impostors = [];
     this.buffers = [];
     this.meshes = gl.createVertexArray();
     gl.bindVertexArray(this.meshes);
@@ -116,6 +137,7 @@ export class Fields {
     const { parts } = this.scene.scattered, { all } = this, drawn = parts.map(() => []);
     for (const [i, { part, seen }] of all.entries())
       if (isInView(seen, view)) drawn[levelOf(parts, part, () => pixelsAcross(seen, view))].push(i);
+    this.placeImpostors(drawn, shade, sharesAt);
     const order = drawn.flat(), shares = sharesAt(new Float32Array(order.flatMap(i => all[i].center)));
     const is_shaded = shade.grid && shade.kind !== 'none' && order.length > 0;
     const { size, numbers, shifts } = is_shaded ? shade.blocksOf(order.map(i => all[i])) : LIGHT;
@@ -137,6 +159,22 @@ export class Fields {
       first += clouds.length;
       return { part: parts[i], first: first - clouds.length, count: clouds.length };
     }).filter(({ count }) => count > 0);
+  }
+
+  // Takes the clouds that are impostors out of those that are drawn, by part. The light that comes to one past other things is the mean at
+  // the corners of its box.
+  placeImpostors(drawn, shade, sharesAt) {
+    const { parts, arrays } = this.scene.scattered;
+    const taken = parts.flatMap((part, i) => part.impostor ? drawn[i].splice(0).map(cloud => ({ part, cloud: this.all[cloud] })) : []);
+    const corners = new Float32Array(taken.flatMap(({ part: { first_vertex }, cloud: { placed } }) =>
+      Array.from({ length: CORNERS }, (_, v) => 3 * (first_vertex + v)).flatMap(v => moved(arrays.positions.subarray(v, v + 3), placed))));
+    const shares = taken.length ? sharesAt(corners) : corners;
+    this.impostors = taken.map(({ part, cloud, cloud: { placed, field } }, i) => {
+      const first = CORNERS * i;
+      shade.darkenPoints(corners, first, CORNERS, shade.numberOf(cloud), shares);
+      const share = shares.subarray(first, first + CORNERS).reduce((sum, one) => sum + one / CORNERS, 0);
+      return { one: scatteredImpostor(part.impostor, placed, field.has_world_extinction), share, pictures: 'scattered' };
+    });
   }
 
   // Places all clouds.

@@ -133,17 +133,33 @@ export class Gpu {
 
   // As fill, but only within a box; the rest gets the value `other`. Targets of another size than the picture's are filled.
   fillBox(box, targets, program, values, other = [0, 0, 0, 1]) {
-    const { gl } = this, [left, bottom, right, top] = box, key = `${box} ${other}`;
+    const key = `${box} ${other}`;
     const is_whole = targets.some(({ width, height }) => width !== this.size.width || height !== this.size.height);
     for (const target of targets) {
       if (is_whole || target.box === key) continue;
       this.clear([target], other);
       target.box = key;
     }
-    if (!is_whole) gl.enable(gl.SCISSOR_TEST);
+    if (is_whole) this.fill(targets, program, values);
+    else this.fillPart(box, targets, program, values);
+  }
+
+  // As fill, but only within a box of the targets' pixels; the rest stays.
+  fillPart(box, targets, program, values) {
+    const { gl } = this, [left, bottom, right, top] = box;
+    gl.enable(gl.SCISSOR_TEST);
     gl.scissor(left, bottom, right - left, top - bottom);
     this.fill(targets, program, values);
     gl.disable(gl.SCISSOR_TEST);
+  }
+
+  // Copies what a box of a target has to another one.
+  copyPart(box, from, to) {
+    const { gl } = this, [left, bottom, right, top] = box;
+    this.drawTo([from]);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, to.texture);
+    gl.copyTexSubImage2D(gl.TEXTURE_2D, 0, left, bottom, left, bottom, right - left, top - bottom);
   }
 
   // Makes targets of one colour with a buffer of depths, in which the nearest surface is kept of what draw() draws.

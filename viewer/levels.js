@@ -16,6 +16,14 @@ export function levelOf(parts, full, pixels) {
 }
 
 /**
+ * Whether a part is drawn, and none of the other levels in its place. @param {Part[]} parts @param {number} i its number @param {View} view
+ */
+export function isDrawn(parts, i, view) {
+  const full = parts[i].level?.of ?? i;
+  return levelOf(parts, full, () => pixelsAcross(parts[full].seen, view)) === i;
+}
+
+/**
  * The pixels that the longest side of a cloud would cover if all of it were where its box is nearest to the camera.
  * @param {{ low: Vec3, high: Vec3, longest: number }} seen @param {View} view
  */

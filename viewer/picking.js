@@ -26,7 +26,7 @@ export const positionOf = (scene, v) => [...scene.arrays.positions.subarray(3 * 
 export function vertexAt(viewer, x, y) {
   const { scene } = viewer, { normals } = scene.arrays, { eye } = viewer.renderer.view, near = 12;  // pixels
   let found = -1, nearest = Infinity;
-  for (const { first_vertex: first, vertices } of scene.parts.filter(part => !part.level))
+  for (const { first_vertex: first, vertices } of scene.parts.filter(part => !part.level && !part.impostor))
     for (let v = first; v < first + vertices; ++v) {
       const position = positionOf(scene, v), at = project(viewer, position);
       if (!(at.w > 0 && at.w < nearest && Math.hypot(at.x - x, at.y - y) < near)) continue;

@@ -27,7 +27,7 @@ export class Renderer {
     this.fields?.delete();
     this.shade = new CloudShade(scene);
     this.fields = scene.scattered ? new Fields(this.gpu, scene) : null;
-    this.impostors = scene.impostors ? new Impostors(this.gpu, scene) : null;
+    this.impostors = Impostors.areIn(scene) ? new Impostors(this.gpu, scene) : null;
     this.skyKey = null;
   }
 

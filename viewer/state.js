@@ -49,7 +49,7 @@ const harmonicOrder = ({ parts, arrays }) =>
 
 /** Why there is no volume to march, or nothing. @param {Scene} scene */
 export function volumeRefusal({ parts, scattered }) {
-  if (parts.length !== 1 || scattered) return 'Only a single cloud has a volume to march.';
+  if (parts.length !== 1 || parts[0].impostor || scattered) return 'Only a single cloud has a volume to march.';
   return parts[0].is_open ? 'This mesh is open, so there is no volume inside it.' : '';
 }
 

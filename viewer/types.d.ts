@@ -18,6 +18,8 @@ interface Part extends Shape {
   level?: { of: number; pixels: number };
   /** Of a part with levels: its box, and its longest side. */
   seen?: { low: Vec3; high: Vec3; longest: number };
+  /** Of an impostor, whose vertices are the corners of its box, without triangles. */
+  impostor?: PlacedImpostor;
 }
 
 /** A field of clouds: preview/mesh_clouds/scatter.h. */
@@ -49,11 +51,17 @@ type Caster = import('../engines/npm/swept_shadow.js').Caster;
 /** Where the nodes of a grid are by which clouds shade each other. */
 type ShadeFrame = import('../engines/npm/shade_grid.js').ShadeFrame;
 
-/** A placed impostor. Center and radius are those of its ball in the world; the matrices are columns, 'to_own' leads to radii. */
+/**
+ * A placed impostor. Center and radius are those of its ball in the world, 'own_radius' is in its own space; the matrices are columns,
+ * 'to_own' leads to radii.
+ */
 interface PlacedImpostor {
-  picture: number; atlas: number[]; center: Vec3; radius: number; to_own: number[]; to_world: number[];
+  picture: number; atlas: number[]; center: Vec3; radius: number; own_radius: number; to_own: number[]; to_world: number[];
   exponent: number; extinction: number; gains: boolean;
 }
+
+/** An impostor of a picture, and the share of the sun's light that comes to it past other things. 'pictures': where its atlas is. */
+interface DrawnImpostor { one: PlacedImpostor; share: number; pictures: 'placed' | 'scattered' }
 
 /** A lamp, or flashes of lightning: of every 'every' seconds one, of which each stroke has a start and a strength. */
 interface Lamp {
@@ -93,7 +101,6 @@ interface Scene {
   shade?: { kind: 'none' | 'each' | 'grid'; low: Vec3; high: Vec3; cloud_size: number; drifts: boolean };  // without a cloud: the kind
   lamps?: Lamp[];
   parts: Part[]; corners: Vec3[];
-  impostors?: PlacedImpostor[];
   mesh?: any;
   scattered?: ScatteredClouds;
   keys?: { table: string; name: string; path: (string | number)[]; limits: Limits }[];

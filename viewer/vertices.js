@@ -143,7 +143,13 @@ export class Vertices {
     this.sharesKey = key;
     const others = layers?.shadows.sharesOfVertices(positions), shares = this.cloudShares.slice();
     for (const part of scene.parts) shade.darken(part, scene.parts[part.level?.of] ?? part, positions, shares);
-    this.setLitBy('sun_share', 1, others ? shares.map((share, v) => share * others[v]) : shares);
+    this.sunShares = others ? shares.map((share, v) => share * others[v]) : shares;
+    this.setLitBy('sun_share', 1, this.sunShares);
+  }
+
+  /** The mean of what comes of the light to the vertices of a part past other things. @param {Part} part */
+  shareOf({ first_vertex: first, vertices }) {
+    return this.sunShares?.subarray(first, first + vertices).reduce((sum, share) => sum + share / vertices, 0) ?? 1;
   }
 
   // The light of the volume that the eye sees through each vertex.

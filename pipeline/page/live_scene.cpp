@@ -44,17 +44,6 @@ void refuseWhatIsNotShown(const SceneFile& scene) {
   if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
 }
 
-// Impostors where the page cannot draw them as `preview` does.
-void refuseImpostors(const Scenery& scenery) {
-  const auto isImpostor = [](const Instance& one) { return one.mesh->impostor != nullptr; };
-  for (const DrawnField& field : scenery.fields)
-    if (std::ranges::any_of(field.meshes, isImpostor))
-      throw UsageError("view draws no impostors in a field of clouds: place them, or take the clouds themselves");
-  if (std::ranges::none_of(scenery.instances, isImpostor) || !drawsShadows(scenery.scene)) return;
-  if (isLayered(scenery.scene) || !scenery.fields.empty() || !std::ranges::all_of(scenery.instances, isImpostor))
-    throw UsageError("view draws no shadows on impostors: set shadows = false in [light]");
-}
-
 // --- Looks ---
 
 // The heights of the sun for tables: the hours of the sky, noon, where the key light changes, and half way between.
@@ -339,7 +328,7 @@ struct Meshes {
   int harmonic_order = 0;  // the largest of all clouds
   bool compares = false, are_colored = false;
   std::vector<const Impostor*> impostors;
-  Json parts = Json::array(), corners = Json::array(), placed_impostors = Json::array();
+  Json parts = Json::array(), corners = Json::array();
 };
 
 // The coefficients of each vertex, padded to whole vectors of four.
@@ -410,8 +399,36 @@ bool isCopy(Meshes& all, const Instance& instance, Json& part) {
   return true;
 }
 
+// The impostor of an instance, and its pictures once.
+Json impostorJson(Meshes& all, const Instance& instance, const SceneFile& scene) {
+  const Impostor& impostor = *instance.mesh->impostor;
+  const ImpostorInfo& info = impostor.info;
+  const auto known = std::find(all.impostors.begin(), all.impostors.end(), &impostor);
+  const auto picture = known - all.impostors.begin();
+  if (known == all.impostors.end()) all.impostors.push_back(&impostor);
+  Affine to_radii = inverted(instance.to_world).value();
+  for (auto& row : to_radii.linear)
+    for (double& entry : row) entry /= double(info.radius);
+  Box ball;
+  const Vec3 reach{info.radius, info.radius, info.radius};
+  ball.add(info.center - reach), ball.add(info.center + reach);
+  for (int i = 0; i < 8; ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, ball.corner(i))));
+  return {{"picture", picture},
+          {"atlas", {info.views, info.frame, impostor.lobe.size() - 1, shortest(info.thickest)}},
+          {"center", jsonOf(transformPoint(instance.to_world, info.center))},
+          {"radius", shortest(info.radius * unitScale(instance.to_world))},
+          {"own_radius", shortest(info.radius)},
+          {"to_own", linearJson(to_radii)},
+          {"to_world", linearJson(instance.to_world)},
+          {"exponent", shortest(info.exponent)},
+          {"extinction", shortest(worldExtinction(instance, scene.light))},
+          {"gains", info.gains}};
+}
+
+// Of an impostor, the part has the corners of its box, where the page finds the light that comes past other things, and no triangles.
 void appendInstance(Meshes& all, const Instance& instance, const Scenery& scenery) {
-  const PlacedMesh placed = placedMesh(instance, scenery.scene.light);
+  PlacedMesh placed = placedMesh(instance, scenery.scene.light);
+  if (instance.mesh->impostor) placed.triangles.clear();
   const auto first = uint32_t(all.vertices);
   Json part = {{"first", all.indices},
                {"count", 3 * placed.triangles.size()},
@@ -422,6 +439,7 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
                {"shape", shapeJson(placed.shape)},
                {"extinction", shortest(placed.extinction)}};
   appendCaster(all, instance, part);
+  if (instance.mesh->impostor) part["impostor"] = impostorJson(all, instance, scenery.scene);
   all.vertices += placed.positions.size(), all.indices += 3 * placed.triangles.size();
   if (!isCopy(all, instance, part)) {
     part.update(all.packer.addPositions(placed.positions));
@@ -455,33 +473,9 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   all.parts.push_back(std::move(part));
 }
 
-// An impostor, without the box that stands for it.
-void appendImpostor(Meshes& all, const Instance& instance, const SceneFile& scene) {
-  const Impostor& impostor = *instance.mesh->impostor;
-  const ImpostorInfo& info = impostor.info;
-  const auto known = std::find(all.impostors.begin(), all.impostors.end(), &impostor);
-  Affine to_radii = inverted(instance.to_world).value();
-  for (auto& row : to_radii.linear)
-    for (double& entry : row) entry /= double(info.radius);
-  all.placed_impostors.push_back({{"picture", known - all.impostors.begin()},
-                                  {"atlas", {info.views, info.frame, impostor.lobe.size() - 1, shortest(info.thickest)}},
-                                  {"center", jsonOf(transformPoint(instance.to_world, info.center))},
-                                  {"radius", shortest(info.radius * unitScale(instance.to_world))},
-                                  {"to_own", linearJson(to_radii)},
-                                  {"to_world", linearJson(instance.to_world)},
-                                  {"exponent", shortest(info.exponent)},
-                                  {"extinction", shortest(worldExtinction(instance, scene.light))},
-                                  {"gains", info.gains}});
-  if (known == all.impostors.end()) all.impostors.push_back(&impostor);
-  Box ball;
-  const Vec3 reach{info.radius, info.radius, info.radius};
-  ball.add(info.center - reach), ball.add(info.center + reach);
-  for (int i = 0; i < 8; ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, ball.corner(i))));
-}
-
-// A cloud, then its levels, which the page draws in its place where it is small: the rule of preview/mesh_clouds/levels.h.
+// A cloud, then its levels, impostors among them, which the page draws in its place where it is small: the rule of
+// preview/mesh_clouds/levels.h.
 void appendWithLevels(Meshes& all, const Instance& instance, const Scenery& scenery) {
-  if (instance.mesh->impostor) return appendImpostor(all, instance, scenery.scene);
   const size_t full = all.parts.size();
   appendInstance(all, instance, scenery);
   if (instance.levels.empty()) return;
@@ -612,7 +606,6 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const SunTable suns = sunTable(scenery);
   const std::vector<Instance> instances = instancesAt(scenery, file.view);
   Meshes meshes = meshesOf(scenery.instances, scenery);
-  refuseImpostors(scenery);
   if (meshes.triangles.empty() && meshes.impostors.empty() && scenery.fields.empty() && !isLayered(file))
     throw UsageError("view needs a cloud with triangles, or another layer");
 
@@ -657,7 +650,6 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   for (const DrawnField& field : scenery.fields)
     for (int i = 0; i < 8; ++i) meshes.corners.push_back(jsonOf(boxOf(field).corner(i)));
   scene["parts"] = std::move(meshes.parts);
-  if (!meshes.impostors.empty()) scene["impostors"] = std::move(meshes.placed_impostors);
   scene["corners"] = std::move(meshes.corners);
   return {std::move(scene), looksOf(file, suns)};
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/impostor.h"
 #include "io/gltf/asset_info.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
@@ -170,6 +171,60 @@ TEST(LivePage, HoldsLevels) {
   EXPECT_EQ(parts[0]["seen"]["longest"], 4);
   EXPECT_EQ(parts[0]["seen"]["low"], Json({3, -2, -2}));
   EXPECT_FALSE(parts[1].contains("seen"));
+}
+
+// A ball's impostor as a level of it.
+BakedMesh impostorLevel(int pixels) {
+  ImpostorInfo info;
+  info.views = 2, info.frame = 8;
+  info.center = {0, 0.5F, 0}, info.radius = 1.5F;
+  info.box.add({-1, -1, -1}), info.box.add({1, 1, 1});
+  info.extinction = 3;
+  info.level = 2, info.switch_pixels = pixels;
+  Impostor impostor = blankImpostor(info);
+  addMipLevels(impostor);
+  return boxWithImpostor(std::move(impostor));
+}
+
+// A level that is an impostor has the corners of its box, at which light is found, no triangles, and its pictures once.
+TEST(LivePage, HoldsImpostorsAsLevels) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  BakedMesh level = bakedBall(1, {}, 1);
+  level.info.switch_pixels = 40;
+  const BakedMesh far = impostorLevel(20);
+  const BakedMesh* levels[] = {&level, &far};
+  scenery.instances[0].levels = levels;
+  scenery.instances.push_back({&ball, placement({9, 0, 0}, {}, {1, 1, 1}), nullptr, {}, levels});
+  scenery.fields.push_back({ScatterSettings{}, {}, {{&ball, {}, nullptr, {}, levels}, {&far, {}}}});
+  scenery.scene.fields.emplace_back();
+  const Json scene = liveScene(scenery, "ball").scene, &parts = scene["parts"], &scattered = scene["scattered"];
+  ASSERT_EQ(parts.size(), 6U);
+  for (const size_t full : {0U, 3U}) {
+    const Json &part = parts[full + 2], &mesh = parts[full + 1];
+    EXPECT_FALSE(parts[full].contains("impostor") || mesh.contains("impostor"));
+    EXPECT_EQ(part["level"], (Json{{"of", full}, {"pixels", 20}}));
+    EXPECT_EQ(part["count"], 0);
+    EXPECT_EQ(part["first"], mesh["first"].get<size_t>() + mesh["count"].get<size_t>());
+    EXPECT_EQ(part["first_vertex"], mesh["first_vertex"].get<size_t>() + mesh["vertices"].get<size_t>());
+    EXPECT_EQ(part["vertices"], 8);
+    EXPECT_EQ(part["impostor"]["picture"], 0);
+  }
+  const Json& impostor = parts[2]["impostor"];
+  EXPECT_EQ(impostor["center"], Json({5, 1, 0}));
+  EXPECT_EQ(impostor["radius"], 3);
+  EXPECT_EQ(impostor["own_radius"], 1.5);
+  EXPECT_EQ(impostor["atlas"], Json({2, 8, 1, 0}));
+  EXPECT_EQ(impostor["extinction"], 1.5) << "per world unit";
+  EXPECT_EQ(scene["mesh"]["impostors"], Json({3 * 16 * 16}));
+
+  ASSERT_EQ(scattered["parts"].size(), 4U);
+  EXPECT_EQ(scattered["parts"][2]["level"], (Json{{"of", 0}, {"pixels", 20}}));
+  EXPECT_EQ(scattered["parts"][2]["impostor"]["center"], Json({0, 0.5, 0}));
+  EXPECT_TRUE(scattered["parts"][3].contains("impostor")) << "a field may be of impostors";
+  EXPECT_FALSE(scattered["parts"][3].contains("level"));
+  EXPECT_EQ(scattered["fields"][0]["meshes"][1]["part"], 3);
+  EXPECT_EQ(scattered["mesh"]["impostors"].size(), 1U);
 }
 
 // A field has its meshes once, and six numbers for each cloud.
