@@ -214,7 +214,7 @@ class Planner {
         sees = true;
       }
       if (!sees) continue;
-      views_.push_back(std::move(view));
+      views_.push_back(view);
       counts_.push_back(std::move(counts));
     }
     if (views_.empty()) throw InputError(settings_.scene->string(), "no cloud is in any picture of the plan: move the camera nearer");

@@ -24,8 +24,7 @@ float pixelsAcross(const Instance& instance, const Camera& camera) {
 float pixelsAcross(const Box& box, float longest_side, const Camera& camera) {
   const Vec3 eye = camera.look_from, nearest{std::clamp(eye.x, box.low.x, box.high.x), std::clamp(eye.y, box.low.y, box.high.y),
                                              std::clamp(eye.z, box.low.z, box.high.z)};
-  return longest_side * float(camera.height) /
-         (2 * length(eye - nearest) * std::tan(camera.vertical_fov_degrees * float(kPi / 360)));
+  return longest_side * float(camera.height) / (2 * length(eye - nearest) * std::tan(camera.vertical_fov_degrees * float(kPi / 360)));
 }
 
 const BakedMesh& levelAt(const Instance& instance, const Camera& camera) {
