@@ -19,8 +19,11 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <tuple>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "core/certificate.h"
 #include "core/error.h"
@@ -55,6 +58,52 @@ struct Grid {
   double scale = 1;
   std::array<double, 3> offset{0, 0, 0};
   bool isNone() const { return scale == 1 && offset == std::array<double, 3>{0, 0, 0}; }
+};
+
+// The places of a mesh's vertices on its grid. Vertices of one place stay together, and others stay apart where a neighbouring place is
+// free, because sheets that fall into one would be edges of four triangles.
+class GridPlaces {
+ public:
+  using Place = std::array<int, 3>;
+  Place of(const Grid& grid, const std::array<float, 3>& position) {
+    const auto [known, is_new] = places_.try_emplace(position);
+    if (!is_new) return known->second;
+    std::array<double, 3> exact{};
+    Place nearest{};
+    for (size_t c = 0; c < 3; ++c) {
+      exact[c] = (double(position[c]) - grid.offset[c]) / grid.scale;
+      nearest[c] = int(std::lround(exact[c]));
+    }
+    known->second = taken_.contains(nearest) ? freeBeside(nearest, exact).value_or(nearest) : nearest;
+    taken_.insert(known->second);
+    return known->second;
+  }
+
+ private:
+  // The free one of the 26 places around one that is nearest to a point.
+  std::optional<Place> freeBeside(const Place& middle, const std::array<double, 3>& exact) const {
+    std::optional<Place> best;
+    double least = 0;
+    for (int i = 0; i < 27; ++i) {
+      const Place place{middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1};
+      if (std::any_of(place.begin(), place.end(), [](int x) { return x < INT16_MIN || x > INT16_MAX; }) || taken_.contains(place)) continue;
+      double square = 0;
+      for (size_t c = 0; c < 3; ++c) square += (place[c] - exact[c]) * (place[c] - exact[c]);
+      if (!best || square < least) best = place, least = square;
+    }
+    return best;
+  }
+
+  struct Hash {
+    template <class Number>
+    size_t operator()(const std::array<Number, 3>& place) const {
+      size_t hash = 0;
+      for (const Number x : place) hash = hash * 0x9E3779B97F4A7C15U + std::hash<Number>()(x);
+      return hash;
+    }
+  };
+  std::unordered_map<std::array<float, 3>, Place, Hash> places_;
+  std::unordered_set<Place, Hash> taken_;
 };
 
 // The bytes of a buffer view, and how the codec sees them.
@@ -323,7 +372,7 @@ class Packer {
     const std::vector<int> key{take(attributes, "POSITION"), has_normals ? take(attributes, "NORMAL") : -1,
                                has_lobes ? take(attributes, first) : -1, has_lobes ? take(attributes, second) : -1, mesh};
     std::vector<int>& accessors = known_[key];
-    if (accessors.empty()) accessors = addBlock(grid, key, count);
+    if (accessors.empty()) accessors = addBlock(grid, grid_places_[mesh], key, count);
     attributes["POSITION"] = accessors[0];
     if (has_normals) attributes["NORMAL"] = accessors[1];
     if (!has_lobes) return;
@@ -332,19 +381,21 @@ class Packer {
   }
 
   // The interleaved vertices. `key` has the accessors of position, normal and the two sets, −1 where there is none.
-  std::vector<int> addBlock(const Grid& grid, const std::vector<int>& key, size_t count) {
+  std::vector<int> addBlock(const Grid& grid, GridPlaces& grid_places, const std::vector<int>& key, size_t count) {
     const bool has_normals = key[1] >= 0, has_lobes = key[2] >= 0;
     const bool are_apart = form_ == PackForm::kMeshopt;  // normals, because of their filter
     const size_t normal_at = has_lobes ? 12 : 8, stride = normal_at + (has_normals && !are_apart ? 4 : 0);
     View view{std::string(stride * count, '\0'), stride, {}, 0};
     const std::vector<float> places = floats(key[0], 3);
     std::array<int, 3> low{INT16_MAX, INT16_MAX, INT16_MAX}, high{INT16_MIN, INT16_MIN, INT16_MIN};
-    for (size_t v = 0; v < count; ++v)
+    for (size_t v = 0; v < count; ++v) {
+      const GridPlaces::Place on_grid = grid_places.of(grid, {places[3 * v], places[3 * v + 1], places[3 * v + 2]});
       for (size_t c = 0; c < 3; ++c) {
-        const auto place = int16_t(std::lround((double(places[3 * v + c]) - grid.offset[c]) / grid.scale));
+        const auto place = int16_t(on_grid[c]);
         low[c] = std::min<int>(low[c], place), high[c] = std::max<int>(high[c], place);
         store(view.bytes, stride * v + 2 * c, place);
       }
+    }
     if (has_lobes) {
       const std::vector<PackedLobe> lobes = lobesOf(key[2], key[3], grid.scale);
       if (lobes.size() != count) throw InputError(file_.string(), "a UV set has another number of vertices than its positions");
@@ -735,6 +786,7 @@ class Packer {
   std::map<int, size_t> owners_;  // mesh → its first part
   std::map<int, int> copies_;     // mesh → the copy that other nodes have
   std::map<int, Grid> grids_;     // per mesh
+  std::map<int, GridPlaces> grid_places_;
   std::map<std::vector<int>, std::vector<int>> known_;
   std::vector<Json> added_;
   std::set<size_t> replaced_;

@@ -1,6 +1,7 @@
 #include "io/gltf/asset/pack.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/certificate.h"
 #include "core/seal.h"
@@ -17,8 +18,9 @@ GltfSettings packedAs(PackForm form) {
   return settings;
 }
 
-// A lattice of n × n vertices, bent so that it is no plane, with normals: as so many primitives that share the vertices.
-std::string bentSheet(int n, Vec3 origin, size_t pieces = 1) {
+// A lattice of n × n vertices, bent so that it is no plane, with normals: as so many primitives that share the vertices. With a distance,
+// there is a second one so far above it.
+std::string bentSheet(int n, Vec3 origin, size_t pieces = 1, float second = 0) {
   GltfBuilder gltf;
   std::vector<Vec3> positions, normals;
   std::vector<uint16_t> indices;
@@ -33,6 +35,11 @@ std::string bentSheet(int n, Vec3 origin, size_t pieces = 1) {
       const auto v = uint16_t(row * n + column), up = uint16_t(v + n);
       for (const uint16_t corner : {v, uint16_t(v + 1), up, uint16_t(v + 1), uint16_t(up + 1), up}) indices.push_back(corner);
     }
+  if (second > 0) {
+    const size_t vertices = positions.size(), corners = indices.size();
+    for (size_t v = 0; v < vertices; ++v) positions.push_back(positions[v] + Vec3{0, 0, second}), normals.push_back(normals[v]);
+    for (size_t c = 0; c < corners; ++c) indices.push_back(uint16_t(indices[c] + vertices));
+  }
   const int position = gltf.accessor(positions, 5126, "VEC3", positions.size());
   gltf.json["accessors"].back()["min"] = {origin.x, origin.y, origin.z};
   gltf.json["accessors"].back()["max"] = {origin.x + 1, origin.y + 1, origin.z + 1};
@@ -133,6 +140,20 @@ TEST(Pack, KeepsTheTrianglesOfPrimitivesThatShareVertices) {
       const Trip trip = roundTrip(folder, "pieces.glb", bentSheet(20, {}, pieces), packedAs(form), false);
       EXPECT_NEAR(areaOf(trip.baked.surface), areaOf(surfaceInScene(trip.sculpt)), 0.01) << int(form) << ", " << pieces << " pieces";
     }
+}
+
+// Sheets that are nearer to each other than a step of the grid stay apart, by a step, and what was one place stays one.
+TEST(Pack, KeepsSheetsApart) {
+  const TestFolder folder;
+  for (const PackForm form : {PackForm::kList, PackForm::kMeshopt}) {
+    const Trip trip = roundTrip(folder, "sheets.glb", bentSheet(20, {}, 2, 2e-7F), packedAs(form), false);
+    const SurfaceMesh before = surfaceInScene(trip.sculpt);
+    std::set<std::array<float, 3>> distinct, kept;
+    for (const Vec3& p : before.positions) distinct.insert({p.x, p.y, p.z});
+    for (const Vec3& p : trip.baked.surface.positions) kept.insert({p.x, p.y, p.z});
+    EXPECT_GT(distinct.size(), 700U);  // floats do not tell all of them apart
+    EXPECT_EQ(kept.size(), distinct.size()) << int(form);
+  }
 }
 
 // Whoever reads the file can tell a change: the seal is made of what is stored.
