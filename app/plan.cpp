@@ -31,6 +31,8 @@ ExitCode runPlan(const CommandLine& line) {
   for (const auto& file : pending) file->commit();
   for (const std::filesystem::path& stale : plan.stale) std::filesystem::remove(stale);
   report.output = plan.files.back().file.string();
+  report.vertices = report.triangles = 0;  // of the clouds that the scene draws now, which is not what a plan is about
+  report.info = {};
   watch.lap(report.seconds, "write");
   Json json = plan.json;
   json["files"] = names;
