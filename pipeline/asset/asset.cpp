@@ -126,12 +126,11 @@ BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const
   return baked;
 }
 
-std::vector<std::vector<Lobe>> lobesPerPart(const Sculpt& sculpt, std::span<const Lobe> lobes) {
-  std::vector<std::vector<Lobe>> per_part;
-  for (auto first = lobes.begin(); const SculptPart& part : sculpt.parts) {
-    const auto end = first + ptrdiff_t(part.positions.size());
-    per_part.emplace_back(first, end);
-    first = end;
+std::vector<std::span<const Lobe>> lobesPerPart(const Sculpt& sculpt, std::span<const Lobe> lobes) {
+  std::vector<std::span<const Lobe>> per_part;
+  for (size_t first = 0; const SculptPart& part : sculpt.parts) {
+    per_part.push_back(lobes.subspan(first, part.positions.size()));
+    first += part.positions.size();
   }
   return per_part;
 }
@@ -140,7 +139,7 @@ BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakePar
   WholeBake whole = settings.mesh.separate ? WholeBake{bakeSeparately(cloud, settings, parameters, report, watch), {}, {}}
                                            : bakeWhole(cloud, settings, parameters, report, watch);
   BakedAsset asset{std::move(whole.lobes), {}, std::move(whole.lattice), {}};
-  const std::vector<std::vector<Lobe>> per_part = lobesPerPart(cloud.sculpt, asset.lobes);
+  const std::vector<std::span<const Lobe>> per_part = lobesPerPart(cloud.sculpt, asset.lobes);
   const auto encode = [&] {
     report.info.first_uv_set = chooseUvSet(cloud.sculpt, settings.output.gltf);
     std::string glb = encodeGlb(cloud.sculpt, per_part, report.info, settings.output.gltf, report.warnings, whole.harmonics);

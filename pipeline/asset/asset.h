@@ -24,8 +24,8 @@ IntegrationField fieldOfCloud(const Cloud& cloud, const Settings& settings, cons
 BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                         BakeReport& report, Stopwatch& watch);
 
-/// The lobes of all vertices as encodeGlb takes them, a list per part.
-std::vector<std::vector<Lobe>> lobesPerPart(const Sculpt& sculpt, std::span<const Lobe> lobes);
+/// The lobes of all vertices as encodeGlb takes them, those of each part. They refer to `lobes`.
+std::vector<std::span<const Lobe>> lobesPerPart(const Sculpt& sculpt, std::span<const Lobe> lobes);
 
 /// A baked cloud as the bytes of a GLB.
 struct BakedAsset {

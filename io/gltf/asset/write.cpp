@@ -48,7 +48,7 @@ struct Output {
 
 // The results of the bake, per part.
 struct Baked {
-  std::span<const std::vector<Lobe>> lobes;
+  std::span<const std::span<const Lobe>> lobes;
   std::span<const float> harmonics;
   size_t per_vertex = 0;
   std::span<const float> harmonicsOf(size_t part) const {
@@ -146,7 +146,7 @@ std::set<int> takenUvSets(const Sculpt& sculpt) {
 }
 
 // Writes the two sets, fillers for missing lower sets, and the attribute, for one primitive.
-void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lobes, std::span<const float> harmonics, int set,
+void writeLobes(Output& out, const SculptPart& part, std::span<const Lobe> lobes, std::span<const float> harmonics, int set,
                 bool attribute, Json& attributes, Warnings& warnings) {
   for (int lower = 0; lower < set; ++lower) {
     if (attributes.contains(uvSetName(lower))) continue;
@@ -493,6 +493,12 @@ int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings) {
 }
 
 std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
+                      const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics) {
+  const std::vector<std::span<const Lobe>> lobes(lobes_per_part.begin(), lobes_per_part.end());
+  return encodeGlb(sculpt, lobes, info, settings, warnings, harmonics);
+}
+
+std::string encodeGlb(const Sculpt& sculpt, std::span<const std::span<const Lobe>> lobes_per_part, const AssetInfo& info,
                       const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics) {
   const Baked baked{lobes_per_part, harmonics, harmonics.empty() ? 0 : harmonicCount(info.harmonic_order)};
   checkShapes(sculpt, baked);

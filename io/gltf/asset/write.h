@@ -20,6 +20,8 @@ int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings);
 /// The same input gives the same bytes. `info.first_uv_set` is ignored: chooseUvSet decides.
 /// `harmonics` has #all vertices × (info.harmonic_order + 1)² coefficients, in order of the parts, for the attributes _TRANSMITTANCE_SH_0
 /// and up, or is empty. Counts kMissingUvSet, kKeepAlive. Throws InputError, also if the result would exceed 4 GiB.
+std::string encodeGlb(const Sculpt& sculpt, std::span<const std::span<const Lobe>> lobes_per_part, const AssetInfo& info,
+                      const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics = {});
 std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
                       const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics = {});
 
