@@ -135,11 +135,16 @@ std::vector<std::span<const Lobe>> lobesPerPart(const Sculpt& sculpt, std::span<
   return per_part;
 }
 
-BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
+namespace {
+
+// `spent`: the cloud, if nobody needs it any more. Then what bounds its volume makes room for the file.
+BakedAsset bakedAsset(const Cloud& cloud, Cloud* spent, const Settings& settings, const BakeParameters& parameters, BakeReport& report,
+                      Stopwatch& watch) {
   WholeBake whole = settings.mesh.separate ? WholeBake{bakeSeparately(cloud, settings, parameters, report, watch), {}, {}}
                                            : bakeWhole(cloud, settings, parameters, report, watch);
   BakedAsset asset{std::move(whole.lobes), {}, std::move(whole.lattice), {}};
   const std::vector<std::span<const Lobe>> per_part = lobesPerPart(cloud.sculpt, asset.lobes);
+  if (spent && settings.mesh.levels.empty()) spent->surface = {}, spent->filled.reset(), spent->level_set.reset();
   const auto encode = [&] {
     report.info.first_uv_set = chooseUvSet(cloud.sculpt, settings.output.gltf);
     std::string glb = encodeGlb(cloud.sculpt, per_part, report.info, settings.output.gltf, report.warnings, whole.harmonics);
@@ -155,17 +160,31 @@ BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakePar
   return asset;
 }
 
-void writeAsset(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+void writeAssetOf(const Cloud& cloud, Cloud* spent, const Settings& settings, BakeReport& report, Stopwatch& watch) {
   const OutputSettings& output = settings.output;
   for (const std::filesystem::path& stale : staleLevels(output.file, settings.mesh.levels.size()))
     report.warnings.add(WarningKind::kStaleLevel, stale.string() + ": this level of detail is of an earlier bake: remove it");
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
-  const BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
+  const BakedAsset asset = bakedAsset(cloud, spent, settings, parameters, report, watch);
   for (const LatticeFile& file : asset.lattice) writeFileAtomically(output.lattice->parent_path() / file.name, file.bytes);
   for (const LevelAsset& level : asset.levels) writeFileAtomically(level.file, level.glb);
   writeFileAtomically(output.file, asset.glb);
   report.output = output.file.string();
   watch.lap(report.seconds, "write");
+}
+
+}  // namespace
+
+BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
+  return bakedAsset(cloud, nullptr, settings, parameters, report, watch);
+}
+
+void writeAsset(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  writeAssetOf(cloud, nullptr, settings, report, watch);
+}
+
+void writeAsset(Cloud&& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  writeAssetOf(cloud, &cloud, settings, report, watch);
 }
 
 }  // namespace cloudbake

@@ -38,5 +38,7 @@ struct BakedAsset {
 BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch);
 /// Resolves the parameters, bakes, and writes the files, the lattice first.
 void writeAsset(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch);
+/// The same for a cloud that nobody needs any more: large ones take less memory. What is left of it has no surface.
+void writeAsset(Cloud&& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake
