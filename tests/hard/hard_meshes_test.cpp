@@ -108,7 +108,7 @@ TEST(HardMeshes, AMirroredNode) {
   const BothBakes bakes = bakedBothWays(scene, 60);
   Warnings warnings;
   for (const auto* lobes : {&bakes.sweep, &bakes.rays}) {
-    const BakedMesh back = decodeGlb("a.glb", encodeGlb(sculpt, {{*lobes}}, {}, {}, warnings), warnings);
+    const BakedMesh back = decodeGlb("a.glb", encodeGlb(sculpt, std::vector<std::vector<Lobe>>{*lobes}, {}, {}, warnings), warnings);
     std::vector<Lobe> truth;
     for (const Vec3& p : back.surface.positions) truth.push_back(ballLobe(p, {7, -3, 1}, 2));
     EXPECT_LT(anglesBetween(back.lobes, truth).median, 1);

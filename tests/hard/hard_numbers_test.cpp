@@ -48,7 +48,7 @@ void expectBall(std::span<const Lobe> lobes, const SurfaceMesh& ball, float radi
 std::vector<Lobe> throughGlb(const SurfaceMesh& mesh, const std::vector<Lobe>& lobes) {
   const Sculpt sculpt{{SculptPart{"part", mesh.positions, mesh.normals, {}, mesh.triangles, {}}}, nullptr};
   Warnings warnings;
-  return decodeGlb("a.glb", encodeGlb(sculpt, {{lobes}}, {}, {}, warnings), warnings).lobes;
+  return decodeGlb("a.glb", encodeGlb(sculpt, std::vector<std::vector<Lobe>>{lobes}, {}, {}, warnings), warnings).lobes;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -98,7 +99,7 @@ class GridPlaces {
     template <class Number>
     size_t operator()(const std::array<Number, 3>& place) const {
       size_t hash = 0;
-      for (const Number x : place) hash = hash * 0x9E3779B97F4A7C15U + std::hash<Number>()(x);
+      for (const Number x : place) hash = hash * 0x9E3779B97F4A7C15U + std::bit_cast<uint32_t>(x + Number(0));  // −0 is 0
       return hash;
     }
   };

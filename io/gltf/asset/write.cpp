@@ -146,8 +146,8 @@ std::set<int> takenUvSets(const Sculpt& sculpt) {
 }
 
 // Writes the two sets, fillers for missing lower sets, and the attribute, for one primitive.
-void writeLobes(Output& out, const SculptPart& part, std::span<const Lobe> lobes, std::span<const float> harmonics, int set,
-                bool attribute, Json& attributes, Warnings& warnings) {
+void writeLobes(Output& out, const SculptPart& part, std::span<const Lobe> lobes, std::span<const float> harmonics, int set, bool attribute,
+                Json& attributes, Warnings& warnings) {
   for (int lower = 0; lower < set; ++lower) {
     if (attributes.contains(uvSetName(lower))) continue;
     attributes[uvSetName(lower)] = addAccessor(out, copiedBytesOf(std::vector<Vec2>(lobes.size())), kFloat, "VEC2", lobes.size());

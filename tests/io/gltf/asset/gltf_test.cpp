@@ -803,5 +803,5 @@ TEST(Gltf, NeedsALobePerVertex) {
   const TestFolder folder;
   Warnings warnings;
   const Sculpt sculpt = readMesh(folder.write("a.obj", kTetrahedronObj), {}, warnings);
-  EXPECT_THROW(encodeGlb(sculpt, {}, {}, {}, warnings), Error);
+  EXPECT_THROW(encodeGlb(sculpt, std::vector<std::vector<Lobe>>(), {}, {}, warnings), Error);
 }
