@@ -15,6 +15,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/asset/write.h"
+#include "io/gltf/impostor/impostor_file.h"
 #include "io/gltf/sculpt/part_per_primitive.h"
 #include "io/gltf/sculpt/reduce_sculpt.h"
 #include "preview/compare/popping.h"
@@ -239,7 +240,7 @@ std::vector<std::filesystem::path> staleLevels(const std::filesystem::path& outp
   std::vector<std::filesystem::path> stale;
   for (size_t level = levels + 1; level <= kMostLevels; ++level) try {
       const std::filesystem::path file = levelFile(output, level);
-      if (isBakedAsset(file, readFileBytes(file))) stale.push_back(file);
+      if (const std::string bytes = readFileBytes(file); isBakedAsset(file, bytes) || isImpostor(bytes)) stale.push_back(file);
     } catch (const Error&) {  // most often there is none
     }
   return stale;

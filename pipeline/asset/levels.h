@@ -17,7 +17,8 @@ namespace cloudbake {
 /// "cloud_lod1.glb" for level 1 of "cloud.glb".
 std::filesystem::path levelFile(const std::filesystem::path& output, size_t level);
 
-/// The baked assets that are named as levels of this output beyond its last one: an earlier bake with more levels has left them.
+/// The baked assets and impostors that are named as levels of this output beyond its last one: an earlier bake or plan with more levels has
+/// left them.
 std::vector<std::filesystem::path> staleLevels(const std::filesystem::path& output, size_t levels);
 
 /// A level as the bytes of its GLB.

@@ -178,12 +178,18 @@ size_t stepOfSize(float pixels) {
   return step;
 }
 
+std::vector<size_t> usedWays(std::span<const int> switch_pixels) {
+  std::vector<size_t> used;
+  for (size_t way = 0; way < switch_pixels.size(); ++way)
+    if (switch_pixels[way] > 0) used.push_back(way);
+  return used;
+}
+
 size_t wayAt(std::span<const int> switch_pixels, float pixels) {
-  size_t finest = 0;
-  while (finest + 1 < switch_pixels.size() && switch_pixels[finest] == 0) ++finest;
-  for (size_t way = switch_pixels.size(); way-- > finest + 1;)
-    if (pixels <= float(switch_pixels[way])) return way;
-  return finest;
+  const std::vector<size_t> used = usedWays(switch_pixels);
+  for (size_t i = used.size(); i-- > 1;)
+    if (pixels <= float(switch_pixels[used[i]])) return used[i];
+  return used.front();
 }
 
 PlanCost costOfFull(std::span<const std::vector<DrawnWay>> assets, std::span<const ViewCounts> views) {

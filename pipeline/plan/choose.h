@@ -59,6 +59,8 @@ struct PlannedWays {
   std::vector<double> changes;  ///< of each picture
 };
 
+/// The ways that are drawn, from fine to coarse. The first one is drawn at all sizes above those of the others.
+std::vector<size_t> usedWays(std::span<const int> switch_pixels);
 /// The way that is drawn at a size.
 size_t wayAt(std::span<const int> switch_pixels, float pixels);
 

@@ -15,8 +15,7 @@
 #include "core/portable_math.h"
 #include "io/file/own_file.h"
 #include "io/file/write_file.h"
-#include "io/gltf/asset/decode.h"
-#include "io/gltf/impostor/impostor_file.h"
+#include "io/gltf/asset/relabel.h"
 #include "io/report/figures.h"
 #include "pipeline/asset/levels.h"
 #include "pipeline/options/run_files.h"
@@ -237,7 +236,7 @@ class Planner {
     for (int round = 0; round < kRounds; ++round) {
       take(chooseWays(drawn_, counts_, budget, pixels(), correction));
       compare();
-      const double measured = *std::max_element(measured_.begin(), measured_.end());
+      const double measured = mostMeasured();
       const bool is_within = measured <= change;
       if (is_within && (!accepted || plan_.cost.vertices < accepted->cost.vertices)) accepted = plan_, accepted_changes = measured_;
       (is_within ? within : beyond) = {correction, measured};
@@ -298,22 +297,19 @@ class Planner {
   // Labels the ways with the sizes of a plan.
   void take(PlannedWays plan) {
     plan_ = std::move(plan);
-    levels_.clear();
+    drawn_meshes_.clear();
     for (size_t a = 0; a < assets_.size(); ++a) {
-      levels_.emplace_back();
-      for (size_t way = finestOf(a) + 1; way < assets_[a].ways.size(); ++way) {
-        if (plan_.switch_pixels[a][way] == 0) continue;
+      std::vector<const BakedMesh*>& meshes = drawn_meshes_.emplace_back();
+      for (const size_t way : waysOf(a)) {
         assets_[a].ways[way].mesh.info.switch_pixels = plan_.switch_pixels[a][way];
-        levels_.back().push_back(&assets_[a].ways[way].mesh);
+        meshes.push_back(&assets_[a].ways[way].mesh);
       }
     }
   }
 
-  size_t finestOf(size_t asset) const {
-    const std::vector<int>& sizes = plan_.switch_pixels[asset];
-    const auto first = std::find_if(sizes.begin(), sizes.end(), [](int pixels) { return pixels > 0; });
-    return first == sizes.end() ? 0 : size_t(first - sizes.begin());
-  }
+  std::vector<size_t> waysOf(size_t asset) const { return usedWays(plan_.switch_pixels[asset]); }
+
+  double mostMeasured() const { return *std::max_element(measured_.begin(), measured_.end()); }
 
   // The full clouds as a view sees them.
   std::vector<Instance> seenBy(const View& view) const {
@@ -327,8 +323,9 @@ class Planner {
       const auto found = asset_of_.find(instance.mesh);
       if (found == asset_of_.end()) continue;
       instance.sized_as = instance.mesh;
-      instance.mesh = &assets_[found->second].ways[finestOf(found->second)].mesh;
-      instance.levels = levels_[found->second];
+      const std::span<const BakedMesh* const> meshes = drawn_meshes_[found->second];
+      instance.mesh = meshes.front();
+      instance.levels = meshes.subspan(1);
     }
     return instances;
   }
@@ -385,7 +382,7 @@ class Planner {
     require("vertices", settings_.plan.vertices, plan_.cost.vertices);
     require("bytes", settings_.plan.bytes, plan_.cost.bytes);
     require("draws", settings_.plan.draws, plan_.cost.draws);
-    const double measured = *std::max_element(measured_.begin(), measured_.end());
+    const double measured = mostMeasured();
     if (measured > settings_.plan.change)
       throw Error(ExitCode::kBound, settings_.scene->string(), 0, 0,
                   fmt::format("a picture changes by {:.2f}/255, and {:g} is allowed: allow a larger change (--budget change=N)", measured,
@@ -397,19 +394,15 @@ class Planner {
     std::map<std::string, PlannedCloud> clouds;
     for (size_t a = 0; a < assets_.size(); ++a) {
       const Asset& asset = assets_[a];
-      const std::filesystem::path base = folder / (asset.name + ".glb");
-      const size_t finest = finestOf(a);
-      scene.files.push_back({base, labelledGlb(asset.ways[finest], 0, 0, "")});
-      int level = 0;
-      for (size_t way = finest + 1; way < asset.ways.size(); ++way)
-        if (const int pixels = plan_.switch_pixels[a][way]; pixels > 0) {
-          ++level;
-          scene.files.push_back(
-              {levelFile(base, size_t(level)), labelledGlb(asset.ways[way], level, pixels, asset.ways[finest].mesh.info.input_hash)});
-        }
-      clouds[asset.key] = {asset.name + ".glb", level > 0};
-      for (size_t stale = size_t(level) + 1; stale <= kMostLevels; ++stale)
-        if (isLevel(levelFile(base, stale))) scene.stale.push_back(levelFile(base, stale));
+      const std::vector<size_t> ways = waysOf(a);
+      for (size_t level = 0; level < ways.size(); ++level) {
+        const MadeWay& way = asset.ways[ways[level]];
+        const LevelLabel label{int(level), plan_.switch_pixels[a][ways[level]], asset.ways[ways.front()].mesh.info.input_hash};
+        scene.files.push_back({folder / fileOf(a, level), relabelled(fileOf(a, level), way.glb, label)});
+      }
+      clouds[asset.key] = {fileOf(a, 0), ways.size() > 1};
+      const auto stale = staleLevels(folder / fileOf(a, 0), ways.size() - 1);
+      scene.stale.insert(scene.stale.end(), stale.begin(), stale.end());
     }
     PlannedSizes sizes;
     if (!own_.camera && !own_.camera_path) {
@@ -433,21 +426,18 @@ class Planner {
     }
   }
 
-  static bool isLevel(const std::filesystem::path& file) try {
-    const std::string bytes = readFileBytes(file);
-    return isBakedAsset(file, bytes) || isImpostor(bytes);
-  } catch (const Error&) {
-    return false;
-  }
-
   std::string costText(const PlanCost& cost) const {
     return fmt::format("{:.0f} vertices and {:.0f} draws in a picture, {:.0f} bytes", cost.vertices, cost.draws, cost.bytes);
   }
 
-  std::string fileOf(size_t asset, size_t way) const {
-    size_t level = 0;
-    for (size_t i = finestOf(asset) + 1; i <= way; ++i) level += plan_.switch_pixels[asset][i] > 0 ? 1 : 0;
-    return (level == 0 ? std::filesystem::path(assets_[asset].name + ".glb") : levelFile(assets_[asset].name + ".glb", level)).string();
+  // Of the full asset or of a level.
+  std::string fileOf(size_t asset, size_t level) const {
+    const std::string full = assets_[asset].name + ".glb";
+    return level == 0 ? full : levelFile(full, level).string();
+  }
+  std::string fileAt(size_t asset, float pixels) const {
+    const std::vector<size_t> ways = waysOf(asset);
+    return fileOf(asset, size_t(std::find(ways.begin(), ways.end(), wayAt(plan_.switch_pixels[asset], pixels)) - ways.begin()));
   }
 
   std::string text() const {
@@ -455,15 +445,15 @@ class Planner {
         figureLine("plan", "{} clouds of {} assets in {} pictures", all_.size(), assets_.size(), views_.size() * hours_.size());
     text += figureLine("in full", "{}", costText(costOfFull(drawn_, counts_)));
     text += figureLine("planned", "{}", costText(plan_.cost));
-    text += figureLine("change", "{:.2f}/255, the most of {} pictures that were compared; {:g} is allowed",
-                       *std::max_element(measured_.begin(), measured_.end()), measured_.size(), settings_.plan.change);
+    text += figureLine("change", "{:.2f}/255, the most of {} pictures that were compared; {:g} is allowed", mostMeasured(),
+                       measured_.size(), settings_.plan.change);
     for (size_t a = 0; a < assets_.size(); ++a)
-      for (size_t way = finestOf(a); way < assets_[a].ways.size(); ++way) {
-        if (plan_.switch_pixels[a][way] == 0 && way != finestOf(a)) continue;
+      for (const size_t way : waysOf(a)) {
         const DrawnWay& drawn = drawn_[a][way];
-        const std::string size = way == finestOf(a) ? std::string("else") : fmt::format("up to {} pixels", plan_.switch_pixels[a][way]);
-        text += figureLine(way == finestOf(a) ? assets_[a].name : "", "{:16} {:7} {}, {} bytes", size, drawn.vertices,
-                           assets_[a].ways[way].mesh.impostor ? "vertices (impostor)" : "vertices", drawn.bytes);
+        const bool is_finest = way == waysOf(a).front();
+        text += figureLine(is_finest ? assets_[a].name : "", "{:16} {:7} {}, {} bytes",
+                           is_finest ? "else" : fmt::format("up to {} pixels", plan_.switch_pixels[a][way]), drawn.vertices,
+                           drawn.is_picture ? "vertices (impostor)" : "vertices", drawn.bytes);
       }
     return text;
   }
@@ -474,14 +464,15 @@ class Planner {
     Json assets = Json::array();
     for (size_t a = 0; a < assets_.size(); ++a) {
       Json ways = Json::array();
-      for (size_t way = finestOf(a); way < assets_[a].ways.size(); ++way) {
-        if (plan_.switch_pixels[a][way] == 0 && way != finestOf(a)) continue;
-        ways.push_back({{"file", fileOf(a, way)},
-                        {"vertices", drawn_[a][way].vertices},
-                        {"bytes", drawn_[a][way].bytes},
-                        {"impostor", bool(assets_[a].ways[way].mesh.impostor)},
-                        {"packed", assets_[a].ways[way].mesh.info.density_max > 0},
-                        {"switch_pixels", plan_.switch_pixels[a][way]}});
+      const std::vector<size_t> used = waysOf(a);
+      for (size_t level = 0; level < used.size(); ++level) {
+        const DrawnWay& drawn = drawn_[a][used[level]];
+        ways.push_back({{"file", fileOf(a, level)},
+                        {"vertices", drawn.vertices},
+                        {"bytes", drawn.bytes},
+                        {"impostor", drawn.is_picture},
+                        {"packed", assets_[a].ways[used[level]].mesh.info.density_max > 0},
+                        {"switch_pixels", plan_.switch_pixels[a][used[level]]}});
       }
       assets.push_back({{"name", assets_[a].name}, {"from", assets_[a].key}, {"ways", ways}});
     }
@@ -497,15 +488,14 @@ class Planner {
         largest = std::max(largest, size), smallest = std::min(smallest, size);
       }
       if (largest == 0) continue;
-      const std::vector<int>& sizes = plan_.switch_pixels[asset->second];
       clouds.push_back({{"asset", assets_[asset->second].name},
                         {"largest_pixels", std::isfinite(largest) ? Json(std::round(largest)) : Json("inside")},
-                        {"near", fileOf(asset->second, wayAt(sizes, largest))},
-                        {"far", fileOf(asset->second, wayAt(sizes, smallest))}});
+                        {"near", fileAt(asset->second, largest)},
+                        {"far", fileAt(asset->second, smallest)}});
     }
     return {{"change_allowed", settings_.plan.change},
             {"change_expected", plan_.change},
-            {"change_measured", *std::max_element(measured_.begin(), measured_.end())},
+            {"change_measured", mostMeasured()},
             {"pictures", views_.size() * hours_.size()},
             {"pictures_measured", measured_.size()},
             {"full", costJson(costOfFull(drawn_, counts_))},
@@ -529,7 +519,7 @@ class Planner {
   std::vector<ViewCounts> counts_;  // of each view
   std::vector<std::optional<double>> hours_;
   PlannedWays plan_;
-  std::vector<std::vector<const BakedMesh*>> levels_;  // of each asset, as plan_ says
+  std::vector<std::vector<const BakedMesh*>> drawn_meshes_;  // of each asset, from fine to coarse, as plan_ says
   std::vector<double> measured_;
   std::vector<Picture> watched_;
   std::map<Picture, Drawn> full_;

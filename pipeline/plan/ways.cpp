@@ -12,7 +12,6 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/asset/own_colors.h"
-#include "io/gltf/asset/relabel.h"
 #include "io/gltf/asset/write.h"
 #include "io/gltf/impostor/impostor_file.h"
 #include "io/sculpt/read_mesh.h"
@@ -172,13 +171,6 @@ std::vector<MadeWay> makeWays(const std::filesystem::path& file, const std::stri
   std::vector<MadeWay> ways = Maker(file, glb, settings).all();
   cache.add(key, packedWays(ways));
   return ways;
-}
-
-std::string labelledGlb(const MadeWay& way, int level, int switch_pixels, const std::string& level_of) {
-  if (!way.mesh.impostor) return relabelled("", way.glb, {level, switch_pixels});
-  Impostor impostor = *way.mesh.impostor;
-  impostor.info.level = level, impostor.info.switch_pixels = switch_pixels, impostor.info.level_of = level_of;
-  return encodeImpostor(impostor, billboardOf(impostor)).glb;
 }
 
 }  // namespace cloudbake

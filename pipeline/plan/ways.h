@@ -33,7 +33,4 @@ struct MadeWay {
 /// plan does not make them again. `glb`: the bytes of the baked asset `file`. Throws InputError if it is no baked asset.
 std::vector<MadeWay> makeWays(const std::filesystem::path& file, const std::string& glb, const WaysSettings& settings);
 
-/// The file of a way with its final label: as a full asset, or as a level of one with this input_hash.
-std::string labelledGlb(const MadeWay& way, int level, int switch_pixels, const std::string& level_of);
-
 }  // namespace cloudbake
