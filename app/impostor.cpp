@@ -1,5 +1,6 @@
 // cloudbake impostor ASSET.glb -o DIR: pictures of a baked asset from all sides that any light can shine on.
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/tell.h"
@@ -28,15 +29,13 @@ ExitCode runImpostor(const CommandLine& line) {
   }
   watch.lap(report.seconds, "encode");
   createFolder(folder);
-  // All are written before one is replaced, so that a full disk leaves no pictures of two impostors.
-  std::vector<std::unique_ptr<PendingFile>> pending;
+  std::vector<FileBytes> together;
   Json names = Json::array();
   for (const auto& [name, bytes] : written) {
-    pending.push_back(std::make_unique<PendingFile>(folder / name));
-    pending.back()->write(bytes);
+    together.push_back({folder / name, bytes});
     names.push_back((folder / name).string());
   }
-  for (const auto& file : pending) file->commit();
+  writeFilesTogether(together);
   report.output = (folder / written.front().first).string();
   watch.lap(report.seconds, "write");
   std::string text = impostorText(baked);

@@ -1,5 +1,6 @@
 // cloudbake plan SCENE.toml -o DIR: chooses how the clouds of a scene are drawn at each distance, and writes the assets for it.
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/allocation.h"
 #include "app/commands.h"
@@ -20,15 +21,13 @@ ExitCode runPlan(const CommandLine& line) {
   const ScenePlan plan = namingFile(report.input, [&] { return planScene(settings, line.given, report, watch); });
   enforceStrict(settings.run.strict, report);
   createFolder(settings.output.file);
-  // All are written before one is replaced, so that a full disk leaves no files of two plans.
-  std::vector<std::unique_ptr<PendingFile>> pending;
+  std::vector<FileBytes> together;
   Json names = Json::array();
   for (const ScenePlan::File& file : plan.files) {
-    pending.push_back(std::make_unique<PendingFile>(file.file));
-    pending.back()->write(file.bytes);
+    together.push_back({file.file, file.bytes});
     names.push_back(file.file.string());
   }
-  for (const auto& file : pending) file->commit();
+  writeFilesTogether(together);
   for (const std::filesystem::path& stale : plan.stale) std::filesystem::remove(stale);
   report.output = plan.files.back().file.string();
   report.vertices = report.triangles = 0;  // of the clouds that the scene draws now, which is not what a plan is about

@@ -1,5 +1,6 @@
 // cloudbake shadow ASSET.glb -o shadow.png: the shadow that an asset casts under a sun, as a picture for decals and light cookies.
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/tell.h"
@@ -39,12 +40,7 @@ ExitCode runShadow(const CommandLine& line) {
   const ShadowPicture picture = settings.scene ? shadowOfScene(line, settings, report, watch) : shadowOfAsset(settings, report, watch);
   watch.lap(report.seconds, "draw");
   const ShadowFiles files = encodeShadow(picture);
-  // Both are written before one is replaced: a disk that is full must not leave a frame of another picture.
-  PendingFile frame(shadowFrameFile(settings.output.file)), png(settings.output.file);
-  frame.write(files.frame);
-  png.write(files.png);
-  frame.commit();
-  png.commit();
+  writeFilesTogether(std::vector<FileBytes>{{shadowFrameFile(settings.output.file), files.frame}, {settings.output.file, files.png}});
   report.output = settings.output.file.string();
   watch.lap(report.seconds, "write");
   tellReport(settings.run, report, {{"frame", Json::parse(files.frame)}}, "wrote       " + shadowFrameFile(report.output).string() + "\n");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <set>
 
 #define XXH_INLINE_ALL
@@ -160,6 +161,15 @@ void writeFileAtomically(const fs::path& target, std::string_view bytes) {
   PendingFile file(target);
   file.write(bytes);
   file.commit();
+}
+
+void writeFilesTogether(std::span<const FileBytes> files) {
+  std::vector<std::unique_ptr<PendingFile>> pending;
+  for (const FileBytes& one : files) {
+    pending.push_back(std::make_unique<PendingFile>(one.file));
+    pending.back()->write(one.bytes);
+  }
+  for (const auto& file : pending) file->commit();
 }
 
 void probeTargets(std::span<const fs::path> targets) {

@@ -32,6 +32,15 @@ class PendingFile {
 /// Replaces `target` by `bytes`, as PendingFile does.
 void writeFileAtomically(const std::filesystem::path& target, std::string_view bytes);
 
+/// A file and its bytes.
+struct FileBytes {
+  std::filesystem::path file;
+  std::string_view bytes;
+};
+/// The same for files that belong together: all are written before one is replaced, so that a full disk does not leave some of them beside
+/// older ones. They are replaced in their order.
+void writeFilesTogether(std::span<const FileBytes> files);
+
 /// Throws IoError if one of these files could not be written now, so that nobody computes in vain, and for a folder that is missing.
 /// Nothing is changed, but temporary files that killed processes left in the folders are removed.
 void probeTargets(std::span<const std::filesystem::path> targets);
