@@ -147,10 +147,11 @@ TEST_F(PlanTest, HasTheSameBytesForAnyNumberOfThreadsAndFromTheCache) {
 
 TEST_F(PlanTest, RemovesLevelsOfAnEarlierPlan) {
   write(planned(kView + clouds(2)));
+  writeFileAtomically(file("planned/hero_lod6.glb"), encodeImpostor(blankImpostor({}), {2, std::vector<uint8_t>(16)}).glb);
   fs::copy_file(file("planned/hero.glb"), file("planned/hero_lod7.glb"));
   writeFileAtomically(file("planned/hero_lod8.glb"), "somebody else's");
   const ScenePlan again = planned(kView + clouds(2));
-  EXPECT_EQ(again.stale, std::vector<fs::path>{file("planned/hero_lod7.glb")});
+  EXPECT_EQ(again.stale, (std::vector<fs::path>{file("planned/hero_lod6.glb"), file("planned/hero_lod7.glb")}));
 }
 
 TEST_F(PlanTest, RefusesWhatItCannotKeep) {
