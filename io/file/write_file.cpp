@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <set>
+#include <vector>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
