@@ -98,6 +98,7 @@ ExitCode runShader(const CommandLine& line);
 ExitCode runShadow(const CommandLine& line);
 ExitCode runImpostor(const CommandLine& line);
 ExitCode runPlan(const CommandLine& line);
+ExitCode runSequence(const CommandLine& line);
 ExitCode runCheck(const CommandLine& line);
 ExitCode runMeasure(const CommandLine& line);
 ExitCode runBatch(const CommandLine& line);

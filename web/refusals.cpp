@@ -38,6 +38,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere>, const LevelSetSettings&, W
 LevelSet levelSetFromMesh(const SurfaceMesh&, const LevelSetSettings&, Warnings&) { refuse(kLevelSet); }
 LevelSet levelSetFromOpenMesh(const SurfaceMesh&, const LevelSetSettings&, Warnings&) { refuse(kClosing); }
 double insideVolume(const LevelSet&) { refuse(kClosing); }
+LevelSet withoutDetail(const LevelSet&, double) { refuse(kLevelSet); }
 CoverageField coverageFromLevelSet(const LevelSet&, std::span<const Vec3>) { refuse(kLevelSet); }
 DenseField denseFromLevelSet(const LevelSet&) { refuse(kLevelSet); }
 std::vector<Lobe> bakeSphereRays(const BakePoints&, const DenseField&, const BakeSettings&, Warnings&) { refuse(kLevelSet); }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <openvdb/tools/LevelSetFilter.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
@@ -286,6 +287,19 @@ LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& s
     throw InputError("", fmt::format("the mesh is open, and its level set contains only {:.2g} of its signed volume: close the holes",
                                      of_grid / of_mesh));
   return level_set;
+}
+
+LevelSet withoutDetail(const LevelSet& level_set, double radius_voxels) {
+  openvdb::FloatGrid::Ptr grid = level_set.grid->vdb->deepCopy();
+  openvdb::tools::LevelSetFilter<openvdb::FloatGrid> filter(*grid);
+  filter.setSpatialScheme(openvdb::math::FIRST_BIAS);  // quick, and the offsets undo each other
+  filter.setTemporalScheme(openvdb::math::TVD_RK1);
+  filter.setNormCount(2);
+  const auto r = float(radius_voxels);
+  filter.offset(-r);
+  filter.offset(2 * r);
+  filter.offset(-r);
+  return held(std::move(grid), level_set.frame);
 }
 
 double insideVolume(const LevelSet& level_set) {

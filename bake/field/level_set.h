@@ -61,6 +61,10 @@ LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& setti
 /// Throws InputError if the result contains less than half of the mesh's signed volume (a scan that fell apart).
 LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings);
 
+/// The shape without what is narrower than two radii: first gaps, holes and folds are closed (a closing by a ball), then threads and sheets
+/// are removed (an opening). `radius` in voxels. Thick parts keep their place. May be empty.
+LevelSet withoutDetail(const LevelSet& level_set, double radius_voxels);
+
 /// Volume of the voxels whose centre is inside, world units³.
 double insideVolume(const LevelSet& level_set);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bake/mesh/mesh_topology.h"
 #include "core/parallel.h"
@@ -29,7 +30,7 @@ class NearestTriangle : public NearestSurface {
       : frame_(boundingBox(surface)),
         positions_(inFrame(surface.positions, frame_)),
         triangles_(surface.triangles),
-        scene_(positions_, triangles_) {}
+        scene_(positions_, triangles_, RaysToCome::kFew) {}
 
   SurfaceError errorOf(const SurfaceMesh& now) const override {
     std::vector<Vec3> samples = inFrame(now.positions, frame_);
@@ -54,17 +55,28 @@ class NearestTriangle : public NearestSurface {
     return points;
   }
 
+  std::vector<SurfacePoint> nearestFacing(std::span<const Vec3> positions, std::span<const Vec3> normals) const override {
+    const std::vector<Vec3> queries = inFrame(positions, frame_);
+    std::vector<SurfacePoint> points(queries.size());
+    parallelFor(queries.size(), [&](size_t i) {
+      Found found = nearestTo(queries[i], normals[i]);
+      points[i] = (found.distance < INFINITY ? found : nearestTo(queries[i])).point;
+    });
+    return points;
+  }
+
  private:
   struct Found {
     double distance = INFINITY;
     SurfacePoint point;
   };
-  Found nearestTo(Vec3 at) const {
+  Found nearestTo(Vec3 at, std::optional<Vec3> facing = std::nullopt) const {
     const openvdb::Vec3d point = wide(at);
     double least = INFINITY;  // squared
     Found found;
     scene_.forTrianglesNear(at, [&](uint32_t triangle, float radius) {
       const auto& [a, b, c] = triangles_[triangle];
+      if (facing && !(dot(cross(positions_[b] - positions_[a], positions_[c] - positions_[a]), *facing) > 0)) return radius;
       openvdb::Vec3d weights;
       const openvdb::Vec3d nearest =
           openvdb::math::closestPointOnTriangleToPoint(wide(positions_[a]), wide(positions_[b]), wide(positions_[c]), point, weights);

@@ -20,6 +20,8 @@ class NearestSurface {
   virtual SurfaceError errorOf(const SurfaceMesh& now) const = 0;
   /// The exactly nearest place for each position.
   virtual std::vector<SurfacePoint> nearestTo(std::span<const Vec3> positions) const = 0;
+  /// The same among triangles that face to the side of each position's normal; among all where none does.
+  virtual std::vector<SurfacePoint> nearestFacing(std::span<const Vec3> positions, std::span<const Vec3> normals) const = 0;
 };
 
 /// The surface must have a triangle, and outlive what is returned.

@@ -12,6 +12,8 @@ namespace cloudbake {
 /// The layout of lobe impostors (io/gltf/impostor/impostor_file.h), which are no baked assets.
 inline constexpr const char* kImpostorLayout = "lobe-impostor";
 bool isImpostorDocument(const Json& document);
+/// Likewise of kSequenceLayout (io/gltf/sequence/sequence_file.h), whose meshes are baked assets only together.
+bool isSequenceDocument(const Json& document);
 
 /// A whole number. Throws Json::type_error for any other value; get<int>() would cast 1e39. A number above 2⁶³ wraps.
 int64_t wholeNumber(const Json& value);

@@ -292,7 +292,7 @@ vdb::FloatGrid::Ptr closedWhereSignsChange(const FileVolume& volume, GridFrame& 
 
 // --- level sets and fog ---
 
-vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& file, std::optional<double> iso, GridFrame& frame, const Limits& limits,
+vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& file, std::optional<double>& iso, GridFrame& frame, const Limits& limits,
                             Warnings& warnings) {
   const Refusal& refuse = limits.refuse;
   GridFrame moved = frame;
@@ -376,11 +376,11 @@ VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const 
     refuse("is of class '" + vdb::GridBase::gridClassToString(kind) +
            "': set its class to level set or fog volume (Houdini: VDB, or Primitive Properties)");
   if (!is_fog && settings.iso) throw UsageError("--iso is for fog volumes: grid '" + grid->getName() + "' is a level set");
-  VdbVolume volume{{nullptr, frameOf(*grid, refuse)}, grid->getName(), is_fog};
+  VdbVolume volume{{nullptr, frameOf(*grid, refuse)}, grid->getName(), settings.iso};
   GridFrame& frame = volume.level_set.frame;
   const Limits limits{settings.memory_limit, refuse};
   const IndexBox box = checkSizeAndVoxelize(*grid, is_fog, frame.voxel_size, limits);
-  auto values = is_fog ? fromFog(*grid, settings.iso, frame, limits, warnings) : fromLevelSet(*grid, box, frame, limits, warnings);
+  auto values = is_fog ? fromFog(*grid, volume.iso, frame, limits, warnings) : fromLevelSet(*grid, box, frame, limits, warnings);
   volume.level_set.grid = std::make_shared<LevelSetGrid>(LevelSetGrid{std::move(values)});
   return volume;
 }

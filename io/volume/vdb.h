@@ -22,7 +22,7 @@ struct VdbSettings {
 struct VdbVolume {
   LevelSet level_set;    ///< on the file's lattice, with the origin moved to the middle of the shape
   std::string grid;      ///< the grid's name in the file; its unique name if there are several of that name
-  bool was_fog = false;  ///< whether it was made from a fog volume
+  std::optional<double> iso;  ///< of a fog volume: the value at the surface, as given or as chosen
 };
 
 /// Reads a level set or a fog volume of floats, halves or doubles from the bytes of `file`, whose name is used for messages. For a fog

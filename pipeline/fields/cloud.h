@@ -16,6 +16,7 @@ struct Cloud {
   std::vector<Sphere> spheres;        ///< of a grown cloud; they are its exact shape if `exact_spheres`
   std::optional<LevelSet> level_set;  ///< of the surface, on its own lattice, if there is one
   std::optional<float> voxel_size;    ///< of a VDB, world units; the integration lattice uses it too
+  std::optional<double> iso;          ///< of a VDB of fog: the value at its surface
   bool exact_spheres = false;         ///< grown without blend, noise and flat base
   bool closed = true;                 ///< the surface bounds a volume
   bool wrapped = false;               ///< --close wrap: a wrap always bounds the volume

@@ -63,6 +63,24 @@ void setBudget(S& settings, O option, V value) {
 }
 
 // "6,9,12".
+// A picture of twice as many pixels is halved six times.
+void setPixels(S& settings, O option, V value) {
+  const int pixels = readNumber<int>(option, value);
+  if (pixels % 32 != 0) refuseValue(option, value, "a multiple of 32 from 32 to 2048");
+  settings.sequence.pixels = pixels;
+}
+std::string pixelsText(const S& settings, O) { return std::to_string(settings.sequence.pixels); }
+
+// "OPTION=A:B".
+void setVaried(S& settings, O option, V value) {
+  constexpr const char* kWanted = "an option and its first and last value, such as spread=0.2:1";
+  const size_t equals = value.find('='), colon = value.find(':', std::min(equals, value.size()));
+  if (equals == 0 || equals == value.npos || colon == value.npos) refuseValue(option, value, kWanted);
+  const double from = readNumber<double>(option, value.substr(equals + 1, colon - equals - 1), -1e9, 1e9),
+               to = readNumber<double>(option, value.substr(colon + 1), -1e9, 1e9);
+  settings.sequence.varied.push_back({value.substr(0, equals), from, to});
+}
+
 void setHours(S& settings, O option, V value) {
   settings.plan.hours.clear();
   for (const std::string& hour : readList(value)) settings.plan.hours.push_back(readNumber<double>(option, hour, 0, 24));
@@ -276,7 +294,8 @@ constexpr const char *kOfRays = " needs --method rays", *kOfComparison = " needs
 // --- The table ---
 
 // `view` bakes what it watches.
-constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
+constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView | kSequence, kBakes = kSculpts | kGrow,
+                   kGrows = kGrow | kMeasure | kBatch | kSequence,
                    kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck | kShadow | kImpostor | kPlan,
                    kAssets = kGrow | kBake | kBatch;
 constexpr unsigned kFromSurface = kAnyInput & ~kFromVolume, kFromGrowth = kFromRules | kFromSpheres;
@@ -284,7 +303,7 @@ constexpr unsigned kFromSurface = kAnyInput & ~kFromVolume, kFromGrowth = kFromR
 constexpr const char *kGeneral = "Options", *kOfBake = "Bake", *kOfLobe = "Lobes", *kOfMesh = "Mesh", *kOfInput = "Input",
                      *kOfGltf = "Asset", *kOfGrowth = "Grown cloud", *kRules = "Rules (as the recipe says, unless given)",
                      *kTurtle = "Turtle (as the recipe says, unless given)", *kSpheres = "Spheres (as the recipe says, unless given)",
-                     *kOfPicture = "Picture", *kOfMotion = "Motion", *kOfSheet = "Comparison", *kOfPage = "Page", *kOfBatch = "Batch",
+                     *kOfSequence = "Sequence", *kOfPicture = "Picture", *kOfMotion = "Motion", *kOfSheet = "Comparison", *kOfPage = "Page", *kOfBatch = "Batch",
                      *kOfTruth = "Truth", *kBounds = "Bounds";
 
 constexpr FileUse kReads{FileUse::kRead};
@@ -432,7 +451,7 @@ const Option kOptions[] = {
      .value = {[](S& s, O o, V v) { s.lobe.target_error = readShare<TargetError>(o, v); },
                {.kind = ValueForm::kNumber, .low = 0.05, .high = 180, .low_percent = 0.01, .high_percent = 100}},
      .group = kOfBake,
-     .commands = kBakes,
+     .commands = kBakes & ~kSequence,
      .common = kGrow | kBake | kMeasure,
      .bits = kInRecipe | kNotOnPage | kInBlendersPanel,
      .help = "find directions and voxels for an rms error: degrees, or % of T"},
@@ -440,7 +459,7 @@ const Option kOptions[] = {
      .unit = "FILE",
      .value = textAt<&S::scene>("view.toml other.toml"),
      .group = kOfBake,
-     .commands = kBakes & ~kView,
+     .commands = kBakes & ~(kView | kSequence),
      .common = kGrow | kBake,
      .help = "scene file: target error 1/255, vertices for its camera, fit for its sun",
      .files = kReads},
@@ -552,7 +571,7 @@ const Option kOptions[] = {
      .unit = "NAME",
      .value = choiceAt<kLobe, &L::harmonic_order>({{"lobe", 0}, {"sh1", 1}, {"sh2", 2}, {"sh3", 3}}),
      .group = kOfLobe,
-     .commands = kBakes,
+     .commands = kBakes & ~kSequence,
      .common = kMeasure,
      .bits = kInRecipe | kNotInBlender,
      .help = "also write spherical harmonics of T: lobe (none), sh1, sh2, sh3"},
@@ -606,7 +625,7 @@ const Option kOptions[] = {
      .unit = "LENGTH",
      .value = {setRemesh, lengthAt<kMesh, &M::remesh>(kTiny, kHuge).form},
      .group = kOfMesh,
-     .commands = kSculpts,
+     .commands = kSculpts & ~kSequence,
      .inputs = kFromSculpt,
      .bits = kNotOnPage,
      .help = "remesh a sculpt with even triangles of this edge length: world units, or % of the longest side",
@@ -618,7 +637,7 @@ const Option kOptions[] = {
      .unit = "E",
      .value = {setRefine, withWord("auto", {.kind = ValueForm::kNumber, .low = 0.0001, .high = 1})},
      .group = kOfMesh,
-     .commands = kSculpts,
+     .commands = kSculpts & ~kSequence,
      .common = kBake,
      .inputs = kFromSculpt,
      .help = "split edges of a sculpt until blending lobes between vertices adds at most E to T (rms, 0 to 1), or auto: a tenth of the "
@@ -666,7 +685,7 @@ const Option kOptions[] = {
     {.name = "inspect",
      .value = flagAt<kMesh, &M::inspect>(),
      .group = kOfMesh,
-     .commands = kSculpts & ~kView,
+     .commands = kSculpts & ~(kView | kSequence),
      .inputs = kFromSculpt,
      .bits = kNotOnPage,
      .help = "also report self-intersections and shells inside others",
@@ -1020,6 +1039,74 @@ const Option kOptions[] = {
      .commands = kPlan,
      .common = kPlan,
      .help = "draw and compare all pictures of the plan, not only some of them"},
+    {.name = "fps",
+     .unit = "X",
+     .value = numberAt<&S::sequence, &SequenceSettings::frames_per_second>(0.1, 1000),
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .help = "frames per second"},
+    {.name = "change",
+     .unit = "X",
+     .value = numberAt<&S::sequence, &SequenceSettings::change>(0, 255),
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .help = "how much blending between keys may change a picture: rms of its values of 0 to 255; 0 keeps every frame"},
+    {.name = "pixels",
+     .unit = "N",
+     .value = {setPixels, {.kind = ValueForm::kWhole, .low = 32, .high = 2048}, pixelsText},
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .help = "how many pixels the longest side covers in that picture, a multiple of 32"},
+    {.name = "detail",
+     .unit = "X|P%",
+     .value = lengthAt<&S::sequence, &SequenceSettings::detail>(0, kHuge),
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .help = "gaps, holes and threads narrower than twice this are left out of the mesh, so that it can follow the cloud",
+     .fallback = "2%"},
+    {.name = "fade",
+     .unit = "N",
+     .value = numberAt<&S::sequence, &SequenceSettings::fade>(1, 1000),
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .help = "frames over which a mesh that can no longer follow the cloud fades into the next one"},
+    {.name = "loop",
+     .value = flagAt<&S::sequence, &SequenceSettings::loops>(),
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .help = "fade the last frames into the first ones, so that the sequence can repeat"},
+    {.name = "vary",
+     .unit = "OPTION=A:B",
+     .value = {setVaried, {.shape = "W=X:X", .examples = "spread=0.2:1 generations=1:5"}},
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .inputs = kFromGrowth,
+     .bits = kRepeats,
+     .help = "of a preset or recipe: an option of grow that changes from A to B over the frames; may be given several times"},
+    {.name = "frames",
+     .unit = "N",
+     .value = numberAt<&S::sequence, &SequenceSettings::frames>(2, 10000),
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .inputs = kFromGrowth,
+     .help = "of a preset or recipe: number of frames"},
+    {.name = "as",
+     .unit = "NAME",
+     .value = choiceAt<&S::sequence, &SequenceSettings::output>(
+         {{"morph", SequenceOutput::kMorph}, {"picture", SequenceOutput::kPicture}, {"keys", SequenceOutput::kKeys}}),
+     .group = kOfSequence,
+     .commands = kSequence,
+     .common = kSequence,
+     .help = "what is written: a GLB with its keys as morph targets (morph), or in a picture that a vertex shader reads (picture), or a "
+             "GLB for each key (keys)"},
     {.name = "camera",
      .unit = "AZ,EL",
      .value = anglesAt<&P::camera_azimuth_degrees, &P::camera_elevation_degrees>(),
@@ -1060,8 +1147,7 @@ const Option kOptions[] = {
      .value = numberAt<kPicture, &P::time_seconds>(0, 1e6),
      .group = kOfPicture,
      .commands = kDraws,
-     .help = "painted: time of swirls, wind and stars",
-     .rules = {{{[](const S& s) { return s.picture.plain && s.picture.time_seconds > 0; }, kOfPainted}}}},
+     .help = "time of the picture: of clouds that change, and in the painted look of swirls, wind and stars"},
     {.name = "exposure",
      .unit = "X",
      .value = numberAt<kPicture, &P::exposure>(kTiny, 1e6),
@@ -1153,7 +1239,7 @@ const Option kOptions[] = {
      .commands = kPreview,
      .common = kPreview,
      .help = "draw what moves by itself in N frames, as animated PNG: swirls alone until they repeat, else frame i after i/fps seconds",
-     .rules = {{{isPlain, kOfPainted}, {isComparison, kOfNoSheet}}}},
+     .rules = {{{isComparison, kOfNoSheet}}}},
     {.name = "fps",
      .unit = "X",
      .value = numberAt<kPicture, &P::frames_per_second>(0.1, 100),

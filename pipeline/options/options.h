@@ -26,7 +26,8 @@ enum Command : unsigned {
   kShader = 128,
   kShadow = 256,
   kImpostor = 512,
-  kPlan = 1024
+  kPlan = 1024,
+  kSequence = 2048
 };
 
 /// Where an option is offered, as bits.

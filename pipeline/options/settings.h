@@ -198,6 +198,26 @@ struct PlanSettings {
   bool measure = false;                          ///< draws and compares all pictures
 };
 
+/// How a sequence stores its keys: in one file, as morph targets or in a picture, or a file for each.
+enum class SequenceOutput { kMorph, kPicture, kKeys };
+
+/// The frames that `sequence` reads, and what it keeps of them.
+struct SequenceSettings {
+  double frames_per_second = 24;
+  int pixels = 128;      ///< that the longest side covers in the pictures that decide which frames are kept
+  double change = 1;     ///< that these pictures may have: rms of their 8-bit values over pixels that show the cloud
+  Length detail{0.02F, true};  ///< what is narrower than two of it is left out of the mesh, though not of the lobes
+  int fade = 4;          ///< frames over which one segment takes the place of another
+  bool loops = false;    ///< the last frames fade into the first ones
+  int frames = 60;       ///< of a grown cloud
+  struct Varied {
+    std::string option;
+    double from = 0, to = 0;
+  };
+  std::vector<Varied> varied;  ///< options that change over the frames of a grown cloud
+  SequenceOutput output = SequenceOutput::kMorph;
+};
+
 /// The largest errors against exact chords that an asset may have.
 struct ErrorBounds {
   std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
@@ -259,6 +279,7 @@ struct Settings {
   ShadowPictureSettings shadow;
   ImpostorSettings impostor;
   PlanSettings plan;
+  SequenceSettings sequence;
   std::optional<std::filesystem::path> scene;  ///< which a bake or a kit is for, or which is drawn
   JudgeSettings judge;
   BatchSettings batch;

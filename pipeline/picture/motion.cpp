@@ -17,12 +17,13 @@ bool swirls(const SceneFile& scene, bool has_mesh_clouds) {
   return has_mesh_clouds && !scene.view.plain && scene.post.distort.swirl_speed > 0 && scene.post.distort.swirl_strength > 0;
 }
 
-std::vector<std::string> movingThings(const SceneFile& scene, bool has_mesh_clouds) {
+std::vector<std::string> movingThings(const SceneFile& scene, bool has_mesh_clouds, bool changes) {
   std::vector<std::string> moving;
   const auto add = [&](bool moves, const char* what) {
     if (moves) moving.emplace_back(what);
   };
   add(swirls(scene, has_mesh_clouds), "swirls");
+  add(changes, "clouds that change");
   add(std::any_of(scene.slabs.begin(), scene.slabs.end(),
                   [](const SlabSettings& slab) { return slab.high_drift != Vec2{} || slab.low_drift != Vec2{}; }),
       "slabs");
@@ -68,11 +69,11 @@ PictureSettings viewAt(PictureSettings view, const Moment& moment) {
   return view;
 }
 
-Film filmOf(const SceneFile& scene, bool has_mesh_clouds) {
+Film filmOf(const SceneFile& scene, bool has_mesh_clouds, bool changes) {
   constexpr double kBelow =
       6;  // degrees: a sweep begins and ends with the sun so far before and past a quarter turn from its highest place
   const PictureSettings& view = scene.view;
-  Film film{{}, movingThings(scene, has_mesh_clouds), false};
+  Film film{{}, movingThings(scene, has_mesh_clouds, changes), false};
   const bool only_swirls = film.moving == std::vector<std::string>{"swirls"};
   const std::optional<double> cycles = only_swirls ? cyclesOfLoop(scene.post.distort) : std::nullopt;
   const bool is_whole = !film.moving.empty() && repeats(scene, film.moving, double(view.frame_count) / view.frames_per_second);

@@ -32,7 +32,8 @@ struct Film {
 /// A turn or an animation in which only swirls move takes one period of them, so that it loops. Otherwise frame i is taken i/fps after the
 /// view's time, and the animation loops if in its seconds fields drift through whole boxes, swirls go through whole periods and nothing
 /// else moves. A sun sweep stays at that time. `has_mesh_clouds`: there is something to swirl.
-Film filmOf(const SceneFile& scene, bool has_mesh_clouds);
+/// `changes`: some of them are sequences.
+Film filmOf(const SceneFile& scene, bool has_mesh_clouds, bool changes = false);
 
 /// "loops" and "frames": the seconds of each, the turn of its camera, and the sun of a sweep as --sun takes it.
 Json filmJson(const Film& film);

@@ -17,6 +17,7 @@
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/asset/own_colors.h"
 #include "io/gltf/impostor/impostor_file.h"
+#include "io/gltf/sequence/sequence_file.h"
 #include "io/image/animated_png.h"
 #include "io/image/exr.h"
 #include "io/image/image.h"
@@ -114,7 +115,16 @@ BakedMesh readMesh(const std::filesystem::path& file, uint64_t memory_limit, War
 const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
   const uint64_t limit = scenery.scene.view.memory_limit;
   const auto [found, is_new] = scenery.meshes.try_emplace(keyOf(cloud));
-  if (is_new) found->second = cloud.file.empty() ? grownMesh(cloud, limit, warnings) : readMesh(cloud.file, limit, warnings);
+  if (is_new && !cloud.file.empty() && isSequence(readFileBytes(cloud.file))) {
+    SceneSequence& own = scenery.sequences[&found->second];
+    own.sequence = decodeSequence(cloud.file, readFileBytes(cloud.file), limit);
+    for (const SequenceSegment& segment : own.sequence.segments)
+      for (const SequenceKey& key : segment.keys)
+        for (const Vec3& p : key.positions) own.whole.add(p);
+    found->second = meshAt(own.sequence, {});
+  } else if (is_new) {
+    found->second = cloud.file.empty() ? grownMesh(cloud, limit, warnings) : readMesh(cloud.file, limit, warnings);
+  }
   return found->second;
 }
 
@@ -197,6 +207,11 @@ void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Wa
 // A cloud of a scene where it is placed, with its levels, and with the field that casts its shadow if there are shadows.
 Instance placed(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
   Instance instance{&meshOf(cloud, scenery, warnings), cloud.to_world};
+  if (const auto changing = scenery.sequences.find(instance.mesh); changing != scenery.sequences.end()) {
+    if (scenery.scene.view.is_live)
+      throw InputError(cloud.file.string(), "is a sequence, which the page does not play: draw it with `cloudbake preview --animate`");
+    instance.whole = changing->second.whole;
+  }
   if (cloud.levels) setLevels(cloud, instance, scenery, warnings);
   if (!drawsShadows(scenery.scene) || instance.mesh->impostor) return instance;
   const auto [found, is_new] = scenery.casters.try_emplace(instance.mesh);
@@ -280,8 +295,8 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
   } else {
     SceneCloud asset;
     asset.file = settings.source.input;
-    const BakedMesh& mesh = meshOf(asset, scenery, report.warnings);
-    scenery.instances.push_back({&mesh, {}});
+    scenery.instances.push_back(placed(asset, scenery, report.warnings));
+    const BakedMesh& mesh = *scenery.instances.back().mesh;
     if (scene.view.compare) scenery.compared.emplace(&mesh, comparedMesh(settings.source, mesh));
     if (scene.view.plain) scene.post = publishedPost();
     scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
@@ -328,21 +343,50 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
   return files;
 }
 
-// The picture of a scene's view, ready for 8 bits. `extra`, if given, receives the files of --channels and --steps.
-Image drawPicture(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, StageSeconds& seconds,
+// Of several pictures, `share` of the first and the rest of the second.
+Image blended(Image first, const Image& second, float share) {
+  for (size_t i = 0; i < first.pixels.size(); ++i) first.pixels[i] = first.pixels[i] * share + second.pixels[i] * (1 - share);
+  return first;
+}
+
+// The picture of a scene's view, before it is dithered for 8 bits. `extra`, if given, receives the files of --channels and --steps.
+Image drawWithoutFades(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, StageSeconds& seconds,
                   std::vector<NamedFile>* extra) {
   const Camera camera = cameraFor(scene, instances, turn.now);
   requirePictureMemory(scene, withLevels(instances, camera), camera);
   if (scene.view.plain) {
     const BakedMesh& mesh = *instances.front().mesh;
-    return dithered(toneMap(mesh.impostor ? renderImpostor(*mesh.impostor, camera, scene.light) : renderLobe(mesh, camera, scene.light),
-                            scene.view.exposure));
+    return toneMap(mesh.impostor ? renderImpostor(*mesh.impostor, camera, scene.light) : renderLobe(mesh, camera, scene.light),
+                            scene.view.exposure);
   }
   DrawnParts parts;
   Image picture = drawScene(scene, instances, turn, parts);
   for (const auto& [name, more] : parts.seconds) addSeconds(seconds, name, more);
   if (extra) *extra = extraPictures(parts, cameraFor(scene, instances, turn.now), scene);
-  return dithered(std::move(picture));
+  return picture;
+}
+
+// While a cloud that changes fades from one mesh to another, two pictures are blended. Clouds that are at the same moment of a fade share
+// them.
+Image drawFades(const SceneFile& scene, std::vector<Instance> instances, const CameraTurn& turn, StageSeconds& seconds,
+                std::vector<NamedFile>* extra) {
+  const auto fading = std::find_if(instances.begin(), instances.end(), [](const Instance& one) { return one.before != nullptr; });
+  if (fading == instances.end()) return drawWithoutFades(scene, instances, turn, seconds, extra);
+  const float share = fading->before_share;
+  std::vector<Instance> before = instances;
+  for (size_t i = 0; i < instances.size(); ++i) {
+    if (!instances[i].before || instances[i].before_share != share) continue;
+    before[i].mesh = before[i].before.get();
+    before[i].now = std::move(before[i].before);
+    before[i].before = instances[i].before = nullptr;
+  }
+  const Image earlier = drawFades(scene, std::move(before), turn, seconds, nullptr);
+  return blended(earlier, drawFades(scene, std::move(instances), turn, seconds, extra), share);
+}
+
+Image drawPicture(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, StageSeconds& seconds,
+                  std::vector<NamedFile>* extra) {
+  return dithered(drawFades(scene, {instances.begin(), instances.end()}, turn, seconds, extra));
 }
 
 // --- Motion ---
@@ -410,7 +454,7 @@ namespace {
 Pictures allPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch) {
   Pictures drawn;
   if (scenery.scene.view.motion != Motion::kNone) {
-    drawn.film = filmOf(scenery.scene, !scenery.instances.empty() || !scenery.fields.empty());
+    drawn.film = filmOf(scenery.scene, !scenery.instances.empty() || !scenery.fields.empty(), !scenery.sequences.empty());
     drawFilm(scenery, sink, drawn, report, watch);
     return drawn;
   }

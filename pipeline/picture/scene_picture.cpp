@@ -254,6 +254,41 @@ Box boxOf(const DrawnField& field) {
   return fieldBox(field.settings, radius);
 }
 
+namespace {
+
+// Gives instances of clouds that change their meshes at a time. Copies of one cloud share them.
+void showMoment(const Scenery& scenery, double seconds, std::vector<Instance>& instances) {
+  std::map<const BakedMesh*, Instance> moments;
+  for (Instance& instance : instances) {
+    const auto found = scenery.sequences.find(instance.mesh);
+    if (found == scenery.sequences.end()) continue;
+    const auto [place, is_new] = moments.try_emplace(instance.mesh);
+    Instance& moment = place->second;
+    if (is_new) {
+      const auto& [sequence, whole] = found->second;
+      const std::vector<SeenSegment> seen = seenAt(sequence, seconds);
+      moment.now = std::make_shared<const BakedMesh>(meshAt(sequence, seen.back()));
+      if (seen.size() > 1) {
+        moment.before = std::make_shared<const BakedMesh>(meshAt(sequence, seen.front()));
+        moment.before_share = seen.front().weight;
+      }
+      if (instance.caster) {
+        Warnings told_for_the_file;
+        moment.own_caster = std::make_shared<const ShadowCaster>(shadowCasterOf(*moment.now, told_for_the_file).value_or(ShadowCaster{}));
+      }
+    }
+    instance.mesh = moment.now.get();
+    instance.now = moment.now, instance.before = moment.before, instance.before_share = moment.before_share;
+    instance.own_caster = moment.own_caster;
+    if (instance.own_caster) instance.caster = instance.own_caster->fractions.empty() ? nullptr : instance.own_caster.get();
+  }
+}
+
+// The box of a mesh as long as the cloud is there.
+Box boxOfMesh(const Instance& instance) { return instance.whole ? *instance.whole : drawnBox(instance.mesh->surface); }
+
+}  // namespace
+
 std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
   std::vector<Instance> instances = scenery.instances;
   for (const DrawnField& field : scenery.fields) {
@@ -262,7 +297,7 @@ std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
     std::vector<Box> boxes;
     std::vector<float> sides;
     for (const Instance& mesh : field.meshes) {
-      boxes.push_back(drawnBox(mesh.mesh->surface));
+      boxes.push_back(boxOfMesh(mesh));
       sides.push_back(longestStretched(mesh));
     }
     const Vec3 wind{float(settings.drift.x * seconds), float(settings.drift.y * seconds), float(settings.drift.z * seconds)};
@@ -273,6 +308,7 @@ std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
       instances.push_back(instance);
     }
   }
+  showMoment(scenery, seconds, instances);
   return instances;
 }
 
@@ -297,7 +333,7 @@ Camera cameraFor(const SceneFile& scene, std::span<const Instance> instances, fl
   }
   Box box;
   for (const Instance& instance : instances) {
-    const Box drawn = instance.scattered ? instance.scattered->field : drawnBox(instance.mesh->surface, instance.to_world);
+    const Box drawn = instance.scattered ? instance.scattered->field : placedBox(instance);
     if (drawn.empty()) continue;
     box.add(drawn.low);
     box.add(drawn.high);

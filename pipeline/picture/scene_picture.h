@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/sequence.h"
 #include "pipeline/picture/motion.h"
 #include "pipeline/scene/scene_file.h"
 
@@ -20,11 +21,18 @@ struct DrawnField {
   std::vector<Instance> meshes;  ///< that the clouds are copies of, placed before they are scattered
 };
 
+/// A cloud that changes.
+struct SceneSequence {
+  CloudSequence sequence;
+  Box whole;  ///< of all its meshes
+};
+
 /// A scene with the meshes that it names.
 struct Scenery {
   SceneFile scene;                                                   ///< at the view's own time and sun
   std::function<SceneFile(const std::optional<Moment>&)> read;       ///< the scene's file at another moment, or as it is; none for an asset
   std::map<std::string, BakedMesh> meshes;                           ///< by file, or by the preset and its settings
+  std::map<const BakedMesh*, SceneSequence> sequences;               ///< of meshes that are the first of a cloud that changes
   std::map<const BakedMesh*, std::vector<const BakedMesh*>> levels;  ///< of detail, in `meshes`
   std::map<const BakedMesh*, ShadowCaster> casters;                  ///< of meshes that shadow something
   std::vector<Instance> instances;                                   ///< they point into `meshes`, `levels` and `casters`

@@ -16,7 +16,9 @@ Cloud readVolume(const Settings& settings, BakeReport& report, Stopwatch& watch)
     requireMemoryForFile(file, settings.source.memory_limit);
     std::string bytes = settings.source.read.read_file(file);
     report.info.input_hash = hashBytes(bytes);
-    cloud.level_set = decodeVdb(file, std::move(bytes), settings.source.volume, report.warnings).level_set;
+    VdbVolume volume = decodeVdb(file, std::move(bytes), settings.source.volume, report.warnings);
+    cloud.level_set = std::move(volume.level_set);
+    cloud.iso = volume.iso;
     cloud.voxel_size = float(cloud.level_set->frame.voxel_size);
     watch.lap(report.seconds, "read");
     cloud.surface = meshFromLevelSet(*cloud.level_set, {settings.mesh.vertices}, report.warnings);

@@ -22,11 +22,11 @@ constexpr float kSunAzimuth = 105, kSunElevation = 30, kCameraAzimuths[] = {60, 
 constexpr SkyColors kColors{{0.016F, 0.07F, 0.27F}, {0.22F, 0.37F, 0.55F},    {0.05F, 0.08F, 0.105F}, {1.08F, 0.96F, 0.78F},
                             {0.09F, 0.15F, 0.27F},  {0.028F, 0.045F, 0.082F}, {0.22F, 0.37F, 0.55F}};
 
-// A far camera, for which the longest side of the box covers kLargestSize pixels. Its picture holds the whole box, and can be halved
+// A far camera, for which the longest side of the box covers so many pixels. Its picture holds the whole box, and can be halved
 // kHalvings times.
-Camera cameraFrom(const Box& box, float azimuth) {
+Camera cameraFrom(const Box& box, float azimuth, int pixels = kLargestSize) {
   constexpr float kFieldOfViewDegrees = 5, kMargin = 1.05F;
-  const float units_per_pixel = box.longestSide() / kLargestSize;
+  const float units_per_pixel = box.longestSide() / float(pixels);
   Camera camera{box.center() + directionFromAngles(azimuth, kCameraElevation), box.center(), kFieldOfViewDegrees};
   const CameraAxes axes = cameraAxes(camera);
   Vec2 half;
@@ -167,6 +167,57 @@ std::vector<SizeChange> Popping::changesByImpostor(const BakedMesh& level) const
     changes.push_back(change);
   }
   return changes;
+}
+
+struct SidePictures::Side {
+  Camera camera;
+  Image sky;        // with one ray per pixel, twice as large
+  Image half_sky, half_tones;
+};
+
+SidePictures::SidePictures(const Box& box, int pixels) : sides_(std::size(kCameraAzimuths)) {
+  parallelFor(sides_.size(), [&](size_t i) {
+    Side& side = sides_[i];
+    side.camera = cameraFrom(box, kCameraAzimuths[i], 2 * pixels);
+    side.sky = drawn({}, side.camera, LightSettings{}.half_lambert);
+    side.half_sky = halved(side.sky);
+    side.half_tones = toneMap(side.half_sky);
+  });
+}
+
+SidePictures::~SidePictures() = default;
+
+SidePictures::Taken SidePictures::of(const BakedMesh& mesh) const {
+  constexpr float kSeen = 1e-3F;
+  std::vector<Taken> taken(sides_.size());
+  parallelFor(sides_.size(), [&](size_t i) {
+    const Side& side = sides_[i];
+    const Image half = halved(drawn(mesh, side.camera, LightSettings{}.half_lambert, &side.sky));
+    for (size_t p = 0; p < half.pixels.size(); ++p) taken[i].shows.push_back(length(half.pixels[p] - side.half_sky.pixels[p]) > kSeen);
+    for (const Vec3& tone : tonesOf(half, taken[i].shows, side.half_tones).pixels) {
+      const auto byte = [](float value) { return uint8_t(std::lround(255 * std::clamp(value, 0.0F, 1.0F))); };
+      taken[i].values.push_back({byte(tone.x), byte(tone.y), byte(tone.z)});
+    }
+  });
+  for (size_t i = 1; i < taken.size(); ++i) {
+    taken[0].values.insert(taken[0].values.end(), taken[i].values.begin(), taken[i].values.end());
+    taken[0].shows.insert(taken[0].shows.end(), taken[i].shows.begin(), taken[i].shows.end());
+  }
+  return taken[0];
+}
+
+float SidePictures::rmsBetween(const Taken& a, const Taken& b) {
+  double squares = 0;
+  size_t count = 0;
+  for (size_t p = 0; p < a.shows.size(); ++p) {
+    if (!a.shows[p] && !b.shows[p]) continue;
+    for (size_t channel = 0; channel < 3; ++channel) {
+      const double difference = double(a.values[p][channel]) - b.values[p][channel];
+      squares += difference * difference / 3;
+    }
+    ++count;
+  }
+  return float(std::sqrt(squares / double(std::max<size_t>(1, count))));
 }
 
 float changeAt(std::span<const SizeChange> changes, float pixels) {

@@ -1,6 +1,8 @@
 // Popping: how much the picture of a cloud changes when a level of detail takes its place.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,6 +37,27 @@ class Popping {
   std::vector<SizeChange> changesByImpostor(const BakedMesh& level) const;
   struct Side;
   float half_lambert_;
+  std::vector<Side> sides_;
+};
+
+/// Pictures from the same two sides with the same lights at one size, for meshes that are in one box.
+class SidePictures {
+ public:
+  /// `pixels`, a multiple of 32: what the longest side of the box covers.
+  SidePictures(const Box& box, int pixels);
+  ~SidePictures();
+
+  /// The pixels of both sides: 8-bit values, and whether they show the mesh.
+  struct Taken {
+    std::vector<std::array<uint8_t, 3>> values;
+    std::vector<uint8_t> shows;
+  };
+  Taken of(const BakedMesh& mesh) const;
+  /// The rms of the differences over all pixels that show either mesh.
+  static float rmsBetween(const Taken& a, const Taken& b);
+
+ private:
+  struct Side;
   std::vector<Side> sides_;
 };
 

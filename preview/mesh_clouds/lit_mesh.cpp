@@ -256,10 +256,10 @@ Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
 }
 
 Box placedBox(const Instance& instance) {
-  if (!instance.scattered) return drawnBox(instance.mesh->surface, instance.to_world);
+  if (!instance.scattered && !instance.whole) return drawnBox(instance.mesh->surface, instance.to_world);
+  const Box& own = instance.scattered ? instance.scattered->own : *instance.whole;
   Box box;
-  for (int i = 0; i < 8 && !instance.scattered->own.empty(); ++i)
-    box.add(transformPoint(instance.to_world, instance.scattered->own.corner(i)));
+  for (int i = 0; i < 8 && !own.empty(); ++i) box.add(transformPoint(instance.to_world, own.corner(i)));
   return box;
 }
 

@@ -61,6 +61,12 @@ struct Instance {
   std::optional<Scattered> scattered = std::nullopt;  ///< of a cloud of a field
   bool is_seen = true;                                ///< else nothing of it is in the picture, and it is not drawn
   const BakedMesh* sized_as = nullptr;                ///< the full mesh, where `mesh` is a level of it
+  // Of a cloud that changes (core/sequence.h):
+  std::optional<Box> whole = std::nullopt;            ///< of the mesh at all times, in its own space
+  std::shared_ptr<const BakedMesh> now = nullptr;     ///< owns `mesh`
+  std::shared_ptr<const BakedMesh> before = nullptr;  ///< what it fades from; null: it does not fade
+  float before_share = 0;                             ///< of the picture with `before` in the place of `mesh`
+  std::shared_ptr<const ShadowCaster> own_caster = nullptr;  ///< owns `caster`
 };
 
 /// The own colour of each vertex, linear; white where a mesh has none.
@@ -75,7 +81,7 @@ Lobe transformedLobe(const Lobe& lobe, const Affine& to_world);
 /// World units per unit of the mesh's own space: ∛|det M|, the mean scale over directions.
 float unitScale(const Affine& to_world);
 
-/// The box of the triangles of an instance in the world; of a cloud of a field, that of its own box.
+/// The box of the triangles of an instance in the world; of a cloud of a field or one that changes, that of its own box.
 Box placedBox(const Instance& instance);
 
 /// σ · longest side of an asset that records no σ.

@@ -74,7 +74,7 @@ TEST(VdbTest, LevelSetsOfAnyVoxelSizeAndPlace) {
       const auto file = writeVdb(folder, {ballGrid(radius, center, h)});
       const VdbVolume volume = readVdb(file);
       EXPECT_EQ(volume.grid, "ball");
-      EXPECT_FALSE(volume.was_fog);
+      EXPECT_FALSE(volume.iso);
       EXPECT_NEAR(volume.level_set.frame.voxel_size, h, 1e-6 * h);
       EXPECT_TRUE(warningsOfVdb(file).empty());
       const double float_step_voxels = 1e-3 + 2e-7 * length(place);
@@ -145,7 +145,7 @@ TEST(VdbTest, FogKeepsItsVolume) {
   for (const double voxels : {12.0, 25.0, 60.0}) {
     const auto file = writeVdb(folder, {fogBall(10, 10 / voxels)});
     const VdbVolume volume = readVdb(file);
-    EXPECT_TRUE(volume.was_fog);
+    EXPECT_TRUE(volume.iso);
     EXPECT_EQ(volume.grid, "density");
     EXPECT_NEAR(insideVolume(volume.level_set), ballVolume(10), 0.03 * ballVolume(10));
     EXPECT_LT(worstOffset(volume.level_set, 10, {1, 2, 3}), 0.9);

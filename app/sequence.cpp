@@ -1,0 +1,88 @@
+// cloudbake sequence FRAMES -o cloud.glb: a cloud that changes, from the frames of a simulation or a growing cloud.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/allocation.h"
+#include "app/commands.h"
+#include "app/progress.h"
+#include "app/tell.h"
+#include "io/file/write_file.h"
+#include "io/gltf/asset/write.h"
+#include "io/gltf/sequence/sequence_file.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/sequence/sequence.h"
+#include "pipeline/sources/grown.h"
+
+namespace cloudbake {
+
+namespace {
+
+struct WrittenFile {
+  std::filesystem::path file;
+  std::string bytes;
+};
+
+// A baked asset for each key: STEM_SEGMENT_FRAME.glb.
+std::vector<WrittenFile> keyFiles(const CloudSequence& sequence, const Settings& settings, Warnings& warnings) {
+  std::vector<WrittenFile> files;
+  const std::filesystem::path stem = std::filesystem::path(settings.output.file).replace_extension();
+  for (size_t s = 0; s < sequence.segments.size(); ++s)
+    for (const SequenceKey& key : sequence.segments[s].keys) {
+      Sculpt sculpt;
+      sculpt.parts.push_back({"cloud", key.positions, key.normals, {}, sequence.segments[s].triangles, {}});
+      const std::vector<std::vector<Lobe>> lobes{key.lobes};
+      files.push_back({fmt::format("{}_{:02}_{:04}.glb", stem.string(), s + 1, key.frame),
+                       encodeGlb(sculpt, lobes, sequence.info, settings.output.gltf, warnings)});
+    }
+  return files;
+}
+
+}  // namespace
+
+ExitCode runSequence(const CommandLine& line) {
+  keepLargeBlocks();
+  BakeReport report;
+  report.command = "sequence";
+  report.input = line.input.string();
+  Stopwatch watch = watchOnTerminal(line.quiet);
+  const bool grows = isGrown(sourceKindOf(line.input));
+  CommandLine first = line;
+  std::vector<FrameInput> frames;
+  if (!grows) {
+    frames = frameFiles(line.input);
+    first.input = frames.front().file;
+  }
+  std::vector<Given> given = line.given;
+  if (grows) {  // the options of the command line override those of the recipe
+    const std::vector<Given> of_recipe = readGrownSource(sourceOf(line)).given;
+    given.insert(given.begin(), of_recipe.begin(), of_recipe.end());
+  }
+  const Settings settings = settingsOf(first, given);
+  if (grows) frames = grownFrames(settings.sequence, line.input);
+  const BakedSequence baked = bakeSequence(frames, settings, given, report, watch);
+  std::vector<WrittenFile> files;
+  switch (settings.sequence.output) {
+    case SequenceOutput::kKeys: files = keyFiles(baked.sequence, settings, report.warnings); break;
+    case SequenceOutput::kMorph: files = {{settings.output.file, encodeSequence(baked.sequence, SequenceForm::kMorph)}}; break;
+    case SequenceOutput::kPicture: files = {{settings.output.file, encodeSequence(baked.sequence, SequenceForm::kTexture)}}; break;
+  }
+  watch.lap(report.seconds, "encode");
+  enforceStrict(settings.run.strict, report);
+  std::vector<FileBytes> together;
+  for (const WrittenFile& file : files) together.push_back({file.file, file.bytes});
+  writeFilesTogether(together);
+  report.output = files.front().file.string();
+  watch.lap(report.seconds, "write");
+  Json json = sequenceJson(baked);
+  size_t bytes = 0;
+  for (const WrittenFile& file : files) {
+    bytes += file.bytes.size();
+    json["files"].push_back(file.file.string());
+  }
+  json["bytes"] = bytes;
+  tellReport(settings.run, report, {{"sequence", json}}, sequenceText(baked) + fmt::format("bytes       {}\n", bytes));
+  return ExitCode::kDone;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,225 @@
+// Where the surface goes is found as optical flow is (B. Lucas, T. Kanade, "An Iterative Image Registration Technique with an Application to
+// Stereo Vision", IJCAI 1981): a vertex only sees how far the surface is along its normal n, at a signed distance e. The motion t of its
+// neighbourhood is that for which n·t = e holds best there,
+//   (Σ w n nᵀ + ε I) t = Σ w e n
+// with sums over the neighbourhood, made by smoothing over the mesh. From round to round neighbourhoods are smaller, as in non-rigid
+// registration with decreasing stiffness (B. Amberg, S. Romdhani, T. Vetter, "Optimal Step Nonrigid ICP Algorithms for Surface
+// Registration", CVPR 2007). So what moves as a whole keeps its vertices, and what is blended between two frames moves with it. In the end
+// vertices are drawn to the surface itself.
+#include "bake/sequence/follow_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/shells.h"
+#include "bake/truth/surface_error.h"
+#include "core/surface_points.h"
+#include "core/vertex_normals.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kSmoothings[] = {48, 32, 16, 6};          // of the sums, per round
+constexpr float kStiffness = 0.2F;                        // ε, as a share of the trace of Σ w n nᵀ
+constexpr int kUnfoldings = 6;                   // most rounds
+constexpr size_t kSamples = 2000;                // of the surface, to find what the mesh has lost
+constexpr double kCrumb = 0.001;                 // of the volume
+
+Vec3 normalOf(const SurfaceMesh& mesh, const Triangle& t) {
+  return cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
+}
+
+std::vector<Vec3> placesOf(const std::vector<SurfacePoint>& points, std::span<const Vec3> values) {
+  std::vector<Vec3> places;
+  for (const SurfacePoint& point : points) places.push_back(valueAt(point, values));
+  return places;
+}
+
+// The triangles that face against the surface at the place nearest to their middle.
+std::vector<size_t> foldedTriangles(const SurfaceMesh& mesh, const SurfaceMesh& surface, const NearestSurface& nearest) {
+  std::vector<Vec3> middles;
+  for (const auto& [a, b, c] : mesh.triangles) middles.push_back((mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3);
+  const std::vector<SurfacePoint> beneath = nearest.nearestTo(middles);
+  std::vector<size_t> folded;
+  for (size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (!(dot(normalOf(mesh, mesh.triangles[i]), normalAt(beneath[i], surface.normals)) > 0)) folded.push_back(i);
+  return folded;
+}
+
+double missedShare(const SurfaceMesh& surface, const SurfaceMesh& mesh) {
+  const std::vector<SurfacePoint> samples = spreadOverSurface(surface, kSamples);
+  const std::vector<Vec3> places = placesOf(samples, surface.positions);
+  const std::vector<Vec3> found = placesOf(nearestSurface(mesh)->nearestTo(places), mesh.positions);
+  const double most = kMissedFrom * boundingBox(surface).longestSide();
+  size_t missed = 0;
+  for (size_t i = 0; i < places.size(); ++i) missed += length(found[i] - places[i]) > most;
+  return double(missed) / double(std::max<size_t>(1, places.size()));
+}
+
+}  // namespace
+
+FollowingMesh::FollowingMesh(SurfaceMesh start) : mesh_(std::move(start)), first_(mesh_.positions.size() + 1) {
+  forEachEdge(mesh_.positions.size(), mesh_.triangles, Degenerate::kLeftOut, [&](uint32_t low, std::span<EdgeSide> sides) {
+    ++first_[low + 1], ++first_[sides.front().high + 1];
+  });
+  for (size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
+  neighbours_.resize(first_.back());
+  std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+  forEachEdge(mesh_.positions.size(), mesh_.triangles, Degenerate::kLeftOut, [&](uint32_t low, std::span<EdgeSide> sides) {
+    const uint32_t high = sides.front().high;
+    neighbours_[next[low]++] = high, neighbours_[next[high]++] = low;
+  });
+  mesh_.normals = vertexNormals(mesh_.positions, mesh_.triangles);
+}
+
+void FollowingMesh::place(std::vector<Vec3> positions) {
+  mesh_.positions = std::move(positions);
+  mesh_.normals = vertexNormals(mesh_.positions, mesh_.triangles);
+}
+
+// The mean of the neighbours' values, per vertex.
+std::vector<Vec3> FollowingMesh::averaged(const std::vector<Vec3>& values) const {
+  std::vector<Vec3> means(values.size());
+  for (size_t v = 0; v < values.size(); ++v) {
+    Vec3 sum;
+    for (uint32_t i = first_[v]; i < first_[v + 1]; ++i) sum += values[neighbours_[i]];
+    const uint32_t count = first_[v + 1] - first_[v];
+    means[v] = count > 0 ? sum / float(count) : values[v];
+  }
+  return means;
+}
+
+void FollowingMesh::smooth(std::vector<Vec3>& values, int passes) const {
+  for (int i = 0; i < passes; ++i) {
+    const std::vector<Vec3> means = averaged(values);
+    for (size_t v = 0; v < values.size(); ++v) values[v] = (values[v] + means[v]) * 0.5F;
+  }
+}
+
+// How each vertex moves with its neighbourhood to these places of the surface.
+std::vector<Vec3> FollowingMesh::motionTo(const std::vector<Vec3>& places, int smoothings) const {
+  const size_t count = places.size();
+  std::vector<Vec3> diagonal(count), beside(count), right(count);  // xx yy zz, yz xz xy of Σ n nᵀ, and Σ e n
+  for (size_t v = 0; v < count; ++v) {
+    const Vec3 n = mesh_.normals[v];
+    diagonal[v] = n * n, beside[v] = {n.y * n.z, n.x * n.z, n.x * n.y};
+    right[v] = n * dot(places[v] - mesh_.positions[v], n);
+  }
+  for (std::vector<Vec3>* values : {&diagonal, &beside, &right}) smooth(*values, smoothings);
+  std::vector<Vec3> motion(count);
+  for (size_t v = 0; v < count; ++v) {
+    const Vec3 o = beside[v];
+    const float stiffness = kStiffness * (diagonal[v].x + diagonal[v].y + diagonal[v].z);
+    const Vec3 d = diagonal[v] + Vec3{stiffness, stiffness, stiffness};
+    // By Cramer's rule.
+    const Vec3 first{d.y * d.z - o.x * o.x, o.x * o.y - o.z * d.z, o.z * o.x - d.y * o.y},
+        second{first.y, d.x * d.z - o.y * o.y, o.z * o.y - d.x * o.x}, third{first.z, second.z, d.x * d.y - o.z * o.z};
+    const float determinant = d.x * first.x + o.z * first.y + o.y * first.z;
+    if (determinant > 0) motion[v] = Vec3{dot(first, right[v]), dot(second, right[v]), dot(third, right[v])} / determinant;
+  }
+  return motion;
+}
+
+// Moves vertices along the surface towards the mean of their neighbours.
+void FollowingMesh::spread(float share) {
+  const std::vector<Vec3> means = averaged(mesh_.positions);
+  for (size_t v = 0; v < means.size(); ++v) {
+    const Vec3 way = means[v] - mesh_.positions[v], n = mesh_.normals[v];
+    mesh_.positions[v] += (way - n * dot(way, n)) * share;
+  }
+}
+
+FollowFigures FollowingMesh::follow(const SurfaceMesh& surface) {
+  const auto nearest = nearestSurface(surface);
+  const auto renewNormals = [&] { mesh_.normals = vertexNormals(mesh_.positions, mesh_.triangles); };
+  const auto nearestPlaces = [&] { return placesOf(nearest->nearestFacing(mesh_.positions, mesh_.normals), surface.positions); };
+  const auto settle = [&] {
+    const std::vector<Vec3> places = nearestPlaces();
+    for (size_t v = 0; v < places.size(); ++v) mesh_.positions[v] += mesh_.normals[v] * dot(places[v] - mesh_.positions[v], mesh_.normals[v]);
+    renewNormals();
+  };
+  for (const int smoothings : kSmoothings) {
+    const std::vector<Vec3> motion = motionTo(nearestPlaces(), smoothings);
+    for (size_t v = 0; v < motion.size(); ++v) mesh_.positions[v] += motion[v];
+    renewNormals();
+  }
+  spread(0.1F);
+  renewNormals();
+  settle();
+  settle();
+
+  // A fold opens if its vertices are smoothed freely before they are drawn to the surface again.
+  std::vector<size_t> folded = foldedTriangles(mesh_, surface, *nearest);
+  for (int round = 0; round < kUnfoldings && !folded.empty(); ++round) {
+    std::vector<bool> loose(mesh_.positions.size());
+    for (const size_t triangle : folded)
+      for (const uint32_t v : mesh_.triangles[triangle]) {
+        loose[v] = true;
+        for (uint32_t i = first_[v]; i < first_[v + 1]; ++i) loose[neighbours_[i]] = true;
+      }
+    for (int i = 0; i < 4; ++i) {
+      const std::vector<Vec3> means = averaged(mesh_.positions);
+      for (size_t v = 0; v < means.size(); ++v)
+        if (loose[v]) mesh_.positions[v] = means[v];
+    }
+    renewNormals();
+    settle();
+    folded = foldedTriangles(mesh_, surface, *nearest);
+  }
+
+  FollowFigures figures;
+  const double volume = signedVolume(surface), area = surfaceArea(mesh_);
+  figures.volume = signedVolume(mesh_) / volume;
+  if (area > 0) {
+    const double most = meanEdgeLength(mesh_) / 4;
+    const float out = float(std::clamp((volume - signedVolume(mesh_)) / area, -most, most));
+    for (size_t v = 0; v < mesh_.positions.size(); ++v) mesh_.positions[v] += mesh_.normals[v] * out;
+    renewNormals();
+  }
+  figures.distance = nearest->errorOf(mesh_);
+  figures.folded = double(folded.size()) / double(std::max<size_t>(1, mesh_.triangles.size()));
+  figures.missed = missedShare(surface, mesh_);
+  return figures;
+}
+
+SurfaceMesh outerShells(const SurfaceMesh& surface) {
+  const SurfaceMesh welded = weldedByPosition(surface);
+  const std::vector<Shell> shells = shellsOf(welded);
+  double volume = 0;
+  for (const Shell& shell : shells) volume += std::max(0.0, shell.volume);
+  SurfaceMesh outer;
+  constexpr uint32_t kNone = 0xFFFFFFFF;
+  std::vector<uint32_t> places(welded.positions.size(), kNone);
+  for (const Shell& shell : shells) {
+    if (!(shell.volume > kCrumb * volume)) continue;
+    for (const uint32_t triangle : shell.triangles) {
+      Triangle t = welded.triangles[triangle];
+      if (!hasDistinctCorners(t)) continue;
+      for (uint32_t& v : t) {
+        if (places[v] == kNone) {
+          places[v] = uint32_t(outer.positions.size());
+          outer.positions.push_back(welded.positions[v]);
+        }
+        v = places[v];
+      }
+      outer.triangles.push_back(t);
+    }
+  }
+  outer.normals = vertexNormals(outer.positions, outer.triangles);
+  return outer;
+}
+
+SurfaceTopology topologyOf(const SurfaceMesh& outer) {
+  size_t edges = 0;
+  forEachEdge(outer.positions.size(), outer.triangles, Degenerate::kLeftOut, [&](uint32_t, std::span<EdgeSide>) { ++edges; });
+  SurfaceTopology topology;
+  topology.shells = int(shellsOf(outer).size());
+  // V − E + F = 2 (shells − handles)
+  const auto euler = ptrdiff_t(outer.positions.size()) - ptrdiff_t(edges) + ptrdiff_t(outer.triangles.size());
+  topology.handles = int(topology.shells - euler / 2);
+  return topology;
+}
+
+}  // namespace cloudbake

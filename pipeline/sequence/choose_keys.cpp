@@ -1,0 +1,127 @@
+// From each key, the next one is as far away as all frames between are near enough. Each distance is tried first that the key before had, and
+// every frame between the keys that are chosen has been compared.
+#include "pipeline/sequence/choose_keys.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "core/lobe_lighting.h"
+#include "core/parallel.h"
+#include "bake/lobe/sweep.h"
+#include "preview/compare/popping.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kLights = 32;
+
+BakedMesh meshOf(const CloudSequence& sequence, const SequenceSegment& segment, SequenceKey key) {
+  BakedMesh mesh;
+  mesh.surface = {std::move(key.positions), std::move(key.normals), segment.triangles};
+  mesh.lobes = std::move(key.lobes);
+  mesh.info = sequence.info;
+  return mesh;
+}
+
+Box boxOf(const SequenceSegment& segment) {
+  Box box;
+  for (const SequenceKey& key : segment.keys)
+    for (const Vec3& p : key.positions) box.add(p);
+  return box;
+}
+
+double rmsBetween(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double squares = 0;
+  for (size_t v = 0; v < a.size(); ++v) squares += double(dot(a[v] - b[v], a[v] - b[v]));
+  return std::sqrt(squares / double(std::max<size_t>(1, a.size())));
+}
+
+class Chooser {
+ public:
+  Chooser(const CloudSequence& sequence, const SequenceSegment& all, int pixels, double most_change)
+      : sequence_(sequence),
+        all_(all),
+        most_(most_change),
+        lights_(bothSenses(sweepAxes(kLights))),
+        pictures_(boxOf(all), pixels),
+        own_(all.keys.size()) {
+    parallelFor(own_.size(), [&](size_t i) { own_[i] = pictures_.of(meshOf(sequence_, all_, all_.keys[i])); });
+  }
+
+  std::vector<size_t> choose(std::vector<BlendFigures>& figures) const {
+    figures.assign(all_.keys.size(), {});
+    std::vector<size_t> keys{0};
+    const size_t last = all_.keys.size() - 1;
+    for (size_t step = 1; keys.back() < last;) {
+      const size_t from = keys.back(), most = last - from;
+      step = std::min(step, most);
+      if (isNear(from, from + step)) {
+        while (step < most && isNear(from, from + step + 1)) ++step;
+      } else {
+        do --step;
+        while (step > 1 && !isNear(from, from + step));
+      }
+      const size_t to = from + step;
+      keys.push_back(to);
+      parallelFor(from + 1, to, [&](size_t i) { figures[i] = {changeAt(i, from, to), transmittanceRms(i, from, to)}; });
+    }
+    return keys;
+  }
+
+ private:
+  SequenceKey blended(size_t frame, size_t from, size_t to) const {
+    return blendedKey(all_.keys[from], all_.keys[to], all_.keys[frame].frame);
+  }
+
+  // Those that moved farthest from the blend come first, because they are the most likely to be too far.
+  bool isNear(size_t from, size_t to) const {
+    std::vector<std::pair<double, size_t>> between;
+    for (size_t i = from + 1; i < to; ++i) between.emplace_back(-rmsBetween(blended(i, from, to).positions, all_.keys[i].positions), i);
+    std::sort(between.begin(), between.end());
+    constexpr size_t kTogether = 4;
+    for (size_t first = 0; first < between.size(); first += kTogether) {
+      std::atomic<bool> is_near = true;
+      parallelFor(first, std::min(first + kTogether, between.size()), [&](size_t i) {
+        if (changeAt(between[i].second, from, to) > most_) is_near = false;
+      });
+      if (!is_near) return false;
+    }
+    return true;
+  }
+
+  double changeAt(size_t frame, size_t from, size_t to) const {
+    return SidePictures::rmsBetween(own_[frame], pictures_.of(meshOf(sequence_, all_, blended(frame, from, to))));
+  }
+
+  double transmittanceRms(size_t frame, size_t from, size_t to) const {
+    const SequenceKey between = blended(frame, from, to);
+    const std::vector<Lobe>& own = all_.keys[frame].lobes;
+    double squares = 0;
+    for (size_t v = 0; v < own.size(); ++v)
+      for (const Vec3& light : lights_) {
+        const auto seen = [&](const Lobe& lobe) { return lobeTransmittance(lobe, light, sequence_.info.shape, sequence_.info.extinction); };
+        const double difference = double(seen(own[v])) - seen(between.lobes[v]);
+        squares += difference * difference;
+      }
+    return std::sqrt(squares / double(std::max<size_t>(1, own.size() * lights_.size())));
+  }
+
+  const CloudSequence& sequence_;
+  const SequenceSegment& all_;
+  double most_;
+  std::vector<Vec3> lights_;
+  SidePictures pictures_;
+  std::vector<SidePictures::Taken> own_;
+};
+
+}  // namespace
+
+std::vector<size_t> chooseKeys(const CloudSequence& sequence, const SequenceSegment& all, int pixels, double most_change,
+                               std::vector<BlendFigures>& figures) {
+  return Chooser(sequence, all, pixels, most_change).choose(figures);
+}
+
+}  // namespace cloudbake

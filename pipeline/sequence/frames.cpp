@@ -1,0 +1,158 @@
+#include "pipeline/sequence/frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <regex>
+
+#include "core/error.h"
+#include "core/text/numbers.h"
+#include "core/text/scan.h"
+#include "io/file/find_files.h"
+#include "io/sculpt/read_mesh.h"
+#include "pipeline/asset/asset.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/sources/grown.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool canBeBaked(const fs::path& file) { return isVdbFile(file) || isSculptFile(file); }
+
+// The last number in the stem of a name; nothing if there is none or it is too large.
+std::optional<int64_t> numberIn(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto end = std::find_if(stem.rbegin(), stem.rend(), isDigit).base();
+  auto begin = end;
+  while (begin != stem.begin() && isDigit(*(begin - 1))) --begin;
+  int64_t number = 0;
+  const auto read = std::from_chars(&*begin, &*begin + (end - begin), number);
+  if (begin == end || read.ec != std::errc() || number > (int64_t(1) << 52)) return std::nullopt;
+  return number;
+}
+
+// A name with "####" or "%04d" as a regular expression; nothing if it has neither.
+std::optional<std::regex> numberedName(const std::string& name) {
+  std::string expression;
+  bool has_number = false;
+  for (size_t i = 0; i < name.size(); ++i) {
+    size_t digits = 0, end = i;
+    if (name[i] == '#') {
+      while (end < name.size() && name[end] == '#') ++end, ++digits;
+    } else if (name[i] == '%') {
+      const size_t d = name.find_first_not_of("0123456789", i + 1);
+      if (d != name.npos && name[d] == 'd') {
+        std::from_chars(name.data() + i + 1, name.data() + d, digits);
+        digits = std::max<size_t>(1, digits), end = d + 1;
+      }
+    }
+    if (end > i) {
+      expression += fmt::format("[0-9]{{{},}}", std::min<size_t>(digits, 20));
+      has_number = true;
+      i = end - 1;
+    } else {
+      if (std::string_view("\\^$.|?*+()[]{}").find(name[i]) != std::string_view::npos) expression += '\\';
+      expression += name[i];
+    }
+  }
+  if (!has_number) return std::nullopt;
+  return std::regex(expression);
+}
+
+std::vector<fs::path> filesIn(const fs::path& folder, const std::function<bool(const fs::path&)>& isWanted) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (isWanted(entry->path())) files.push_back(entry->path());
+  if (error) throw IoError(folder.string(), error.message() + "; check the path and its permissions");
+  return files;
+}
+
+std::vector<fs::path> filesOfInput(const fs::path& input) {
+  if (fs::is_directory(input)) {
+    std::map<std::string, fs::path> kinds;
+    const std::vector<fs::path> files = filesIn(input, [&](const fs::path& file) {
+      const bool is_wanted = canBeBaked(file) && !file.filename().string().starts_with('.');
+      if (is_wanted) kinds.emplace(lowerCase(file.extension().string()), file);
+      return is_wanted;
+    });
+    if (kinds.size() > 1)
+      throw InputError(input.string(), fmt::format("has frames of several kinds ({}, {}): name those of one, such as '{}'", kinds.begin()->second.filename().string(),
+                                                   kinds.rbegin()->second.filename().string(), (input / ("*" + kinds.begin()->first)).string()));
+    return files;
+  }
+  const fs::path folder = input.has_parent_path() ? input.parent_path() : fs::path(".");
+  const auto numbered = numberedName(input.filename().string());
+  if (!numbered) {
+    std::set<fs::path> searched;
+    return filesMatching(input, searched);
+  }
+  std::vector<fs::path> files = filesIn(folder, [&](const fs::path& file) { return std::regex_match(file.filename().string(), *numbered); });
+  if (!input.has_parent_path())
+    for (fs::path& file : files) file = file.filename();
+  return files;
+}
+
+}  // namespace
+
+std::vector<FrameInput> frameFiles(const fs::path& input) {
+  std::vector<std::pair<int64_t, fs::path>> numbered;
+  for (const fs::path& file : filesOfInput(input)) {
+    const auto number = numberIn(file);
+    if (!number) throw InputError(file.string(), "has no number in its name, so that its place among the frames is not known: rename it, or name the others by a pattern such as 'smoke.####.vdb'");
+    numbered.emplace_back(*number, file);
+  }
+  std::sort(numbered.begin(), numbered.end());
+  if (numbered.size() < 2)
+    throw InputError(input.string(), fmt::format("{} found, and a sequence has at least two: give a folder, or a pattern in quotes such as 'smoke.####.vdb'",
+                                                 numbered.empty() ? "no frame was" : "only one frame was"));
+  std::vector<FrameInput> frames;
+  for (size_t i = 0; i < numbered.size(); ++i) {
+    const auto& [number, file] = numbered[i];
+    if (i > 0 && number == numbered[i - 1].first)
+      throw InputError(file.string(), fmt::format("has the same number as {}: name the frames of one sequence by a pattern such as 'smoke.####.vdb'", numbered[i - 1].second.filename().string()));
+    if (!canBeBaked(file)) throw InputError(file.string(), "is neither a volume (VDB) nor a sculpt that can be baked");
+    frames.push_back({double(number - numbered.front().first), file.string(), file});
+  }
+  return frames;
+}
+
+std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const fs::path& input) {
+  std::vector<FrameInput> frames;
+  for (int i = 0; i < settings.frames; ++i) {
+    FrameInput frame{double(i), fmt::format("{}, frame {}", input.string(), i), {}, {}};
+    for (const auto& [key, from, to] : settings.varied) {
+      const Option* option = findOption(key, kGrow);
+      if (!option || option->bits & kOfRun) throw UsageError(fmt::format("--vary: grow has no option '{}': `cloudbake grow --help-all` lists them", key));
+      const double value = from + (to - from) * i / (settings.frames - 1);
+      const bool is_whole = option->value.form.kind == ValueForm::kWhole || key == "generations";
+      frame.varied.push_back({option, is_whole ? fmt::format("{:.0f}", value) : shortestText(float(value)), "", 0, 0});
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+FrameCloud readFrame(const FrameInput& frame, const Settings& settings, std::span<const Given> given, BakeReport& report) {
+  Stopwatch watch;
+  if (frame.file.empty()) {
+    GrownSource source = readGrownSource(settings.source);
+    std::vector<Given> all(given.begin(), given.end());
+    all.insert(all.end(), frame.varied.begin(), frame.varied.end());
+    Settings own = resolve(settings.source, all);
+    own.mesh.vertices.reset();
+    return {growCloud(std::move(source), own, std::nullopt, report, watch), own.field};
+  }
+  Settings own = settings;
+  own.source.input = frame.file;
+  own.mesh.vertices.reset();
+  return {readCloud(own, report, watch), own.field};
+}
+
+}  // namespace cloudbake
