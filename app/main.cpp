@@ -80,8 +80,9 @@ const CommandSpec kCommands[] = {
      "DIR", runPlan, "folder to write the assets and scene.toml to", "", "scene.toml"},
     {kSequence, "sequence", "FRAMES", "frames: a pattern in quotes such as 'smoke.####.vdb', a folder, or a preset or recipe with --vary",
      "bake a cloud that changes, from the frames of a simulation or of a growing cloud, to one GLB",
-     "Examples:\n  cloudbake sequence 'smoke.####.vdb' --fps 24 -o smoke.glb\n  cloudbake sequence frames/ --loop --as picture -o loop.glb\n"
-     "  cloudbake sequence congestus --vary generations=1:4 --frames 48 -o grows.glb",
+     "Examples:\n  cloudbake sequence 'smoke.####.vdb' --fps 24 -o smoke.glb\n  cloudbake sequence frames/ --loop --as picture -o "
+     "loop.glb\n"
+     "  cloudbake sequence congestus --vary size=0.5:1 --frame-count 48 -o grows.glb",
      "FILE", runSequence, "file to write", ".glb"},
     {kCheck, "check", "ASSET.glb", "baked asset to check",
      "check that a baked asset is right, and still intact after an optimiser or importer",

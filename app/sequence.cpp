@@ -59,6 +59,8 @@ ExitCode runSequence(const CommandLine& line) {
     given.insert(given.begin(), of_recipe.begin(), of_recipe.end());
   }
   const Settings settings = settingsOf(first, given);
+  if (grows && settings.sequence.varied.empty())
+    throw UsageError("a preset or recipe needs --vary OPTION=A:B: what changes over the frames, such as size=0.5:1");
   if (grows) frames = grownFrames(settings.sequence, line.input);
   const BakedSequence baked = bakeSequence(frames, settings, given, report, watch);
   std::vector<WrittenFile> files;

@@ -15,7 +15,7 @@
            (mesh, settings, warnings))                                                                                                    \
   FUNCTION(LevelSet, levelSetFromOpenMesh, (const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings),               \
            (mesh, settings, warnings))                                                                                                    \
-  FUNCTION(LevelSet, withoutDetail, (const LevelSet& level_set, double radius_voxels), (level_set, radius_voxels))                       \
+  FUNCTION(LevelSet, withoutDetail, (const LevelSet& level_set, double radius_voxels), (level_set, radius_voxels))                        \
   FUNCTION(double, insideVolume, (const LevelSet& level_set), (level_set))                                                                \
   FUNCTION(CoverageField, coverageFromLevelSet, (const LevelSet& level_set, std::span<const Vec3> points), (level_set, points))           \
   FUNCTION(DenseField, denseFromLevelSet, (const LevelSet& level_set), (level_set))                                                       \

@@ -1,5 +1,5 @@
-// Where the surface goes is found as optical flow is (B. Lucas, T. Kanade, "An Iterative Image Registration Technique with an Application to
-// Stereo Vision", IJCAI 1981): a vertex only sees how far the surface is along its normal n, at a signed distance e. The motion t of its
+// Where the surface goes is found as optical flow is (B. Lucas, T. Kanade, "An Iterative Image Registration Technique with an Application
+// to Stereo Vision", IJCAI 1981): a vertex only sees how far the surface is along its normal n, at a signed distance e. The motion t of its
 // neighbourhood is that for which n·t = e holds best there,
 //   (Σ w n nᵀ + ε I) t = Σ w e n
 // with sums over the neighbourhood, made by smoothing over the mesh. From round to round neighbourhoods are smaller, as in non-rigid
@@ -21,11 +21,11 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kSmoothings[] = {48, 32, 16, 6};          // of the sums, per round
-constexpr float kStiffness = 0.2F;                        // ε, as a share of the trace of Σ w n nᵀ
-constexpr int kUnfoldings = 6;                   // most rounds
-constexpr size_t kSamples = 2000;                // of the surface, to find what the mesh has lost
-constexpr double kCrumb = 0.001;                 // of the volume
+constexpr int kSmoothings[] = {48, 32, 16, 6};  // of the sums, per round
+constexpr float kStiffness = 0.2F;              // ε, as a share of the trace of Σ w n nᵀ
+constexpr int kUnfoldings = 6;                  // most rounds
+constexpr size_t kSamples = 2000;               // of the surface, to find what the mesh has lost
+constexpr double kCrumb = 0.001;                // of the volume
 
 Vec3 normalOf(const SurfaceMesh& mesh, const Triangle& t) {
   return cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
@@ -35,6 +35,12 @@ std::vector<Vec3> placesOf(const std::vector<SurfacePoint>& points, std::span<co
   std::vector<Vec3> places;
   for (const SurfacePoint& point : points) places.push_back(valueAt(point, values));
   return places;
+}
+
+double rmsBetween(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double squares = 0;
+  for (size_t v = 0; v < a.size(); ++v) squares += double(dot(a[v] - b[v], a[v] - b[v]));
+  return std::sqrt(squares / double(std::max<size_t>(1, a.size())));
 }
 
 // The triangles that face against the surface at the place nearest to their middle.
@@ -61,9 +67,8 @@ double missedShare(const SurfaceMesh& surface, const SurfaceMesh& mesh) {
 }  // namespace
 
 FollowingMesh::FollowingMesh(SurfaceMesh start) : mesh_(std::move(start)), first_(mesh_.positions.size() + 1) {
-  forEachEdge(mesh_.positions.size(), mesh_.triangles, Degenerate::kLeftOut, [&](uint32_t low, std::span<EdgeSide> sides) {
-    ++first_[low + 1], ++first_[sides.front().high + 1];
-  });
+  forEachEdge(mesh_.positions.size(), mesh_.triangles, Degenerate::kLeftOut,
+              [&](uint32_t low, std::span<EdgeSide> sides) { ++first_[low + 1], ++first_[sides.front().high + 1]; });
   for (size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
   neighbours_.resize(first_.back());
   std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
@@ -137,15 +142,19 @@ FollowFigures FollowingMesh::follow(const SurfaceMesh& surface) {
   const auto nearestPlaces = [&] { return placesOf(nearest->nearestFacing(mesh_.positions, mesh_.normals), surface.positions); };
   const auto settle = [&] {
     const std::vector<Vec3> places = nearestPlaces();
-    for (size_t v = 0; v < places.size(); ++v) mesh_.positions[v] += mesh_.normals[v] * dot(places[v] - mesh_.positions[v], mesh_.normals[v]);
+    for (size_t v = 0; v < places.size(); ++v)
+      mesh_.positions[v] += mesh_.normals[v] * dot(places[v] - mesh_.positions[v], mesh_.normals[v]);
     renewNormals();
   };
+  const std::vector<Vec3> before = mesh_.positions;
   for (const int smoothings : kSmoothings) {
     const std::vector<Vec3> motion = motionTo(nearestPlaces(), smoothings);
     for (size_t v = 0; v < motion.size(); ++v) mesh_.positions[v] += motion[v];
     renewNormals();
   }
-  spread(0.1F);
+  // Vertices are spread the more, the farther the surface has moved, so that a cloud that rests is left alone.
+  const double edge = meanEdgeLength(mesh_), moved = edge > 0 ? rmsBetween(before, mesh_.positions) / edge : 0;
+  spread(float(std::min(0.2, moved * moved)));
   renewNormals();
   settle();
   settle();
@@ -173,12 +182,16 @@ FollowFigures FollowingMesh::follow(const SurfaceMesh& surface) {
   const double volume = signedVolume(surface), area = surfaceArea(mesh_);
   figures.volume = signedVolume(mesh_) / volume;
   if (area > 0) {
-    const double most = meanEdgeLength(mesh_) / 4;
+    const double most = edge / 4;
     const float out = float(std::clamp((volume - signedVolume(mesh_)) / area, -most, most));
     for (size_t v = 0; v < mesh_.positions.size(); ++v) mesh_.positions[v] += mesh_.normals[v] * out;
     renewNormals();
   }
-  figures.distance = nearest->errorOf(mesh_);
+  const std::vector<Vec3> places = placesOf(nearest->nearestTo(mesh_.positions), surface.positions);
+  const double size = boundingBox(surface).longestSide();
+  figures.distance.rms = rmsBetween(places, mesh_.positions) / size;
+  for (size_t v = 0; v < places.size(); ++v)
+    figures.distance.largest = std::max(figures.distance.largest, double(length(places[v] - mesh_.positions[v])) / size);
   figures.folded = double(folded.size()) / double(std::max<size_t>(1, mesh_.triangles.size()));
   figures.missed = missedShare(surface, mesh_);
   return figures;

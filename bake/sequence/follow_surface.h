@@ -10,7 +10,7 @@ namespace cloudbake {
 
 /// How well a moved mesh shows a frame's surface.
 struct FollowFigures {
-  SurfaceError distance;  ///< of the mesh's vertices and triangle centres to the surface, as shares of the surface's longest side
+  SurfaceError distance;  ///< of the mesh's vertices to the surface, as shares of the surface's longest side
   double missed = 0;      ///< the share of the surface's area that is farther than kMissedFrom from the mesh
   double folded = 0;      ///< the share of the mesh's triangles that face against the surface beneath them
   double volume = 1;      ///< of the mesh, as a share of the surface's

@@ -20,8 +20,8 @@ struct VdbSettings {
 };
 
 struct VdbVolume {
-  LevelSet level_set;    ///< on the file's lattice, with the origin moved to the middle of the shape
-  std::string grid;      ///< the grid's name in the file; its unique name if there are several of that name
+  LevelSet level_set;         ///< on the file's lattice, with the origin moved to the middle of the shape
+  std::string grid;           ///< the grid's name in the file; its unique name if there are several of that name
   std::optional<double> iso;  ///< of a fog volume: the value at the surface, as given or as chosen
 };
 

@@ -204,12 +204,12 @@ enum class SequenceOutput { kMorph, kPicture, kKeys };
 /// The frames that `sequence` reads, and what it keeps of them.
 struct SequenceSettings {
   double frames_per_second = 24;
-  int pixels = 128;      ///< that the longest side covers in the pictures that decide which frames are kept
-  double change = 1;     ///< that these pictures may have: rms of their 8-bit values over pixels that show the cloud
+  int pixels = 128;            ///< that the longest side covers in the pictures that decide which frames are kept
+  double change = 1;           ///< that these pictures may have: rms of their 8-bit values over pixels that show the cloud
   Length detail{0.02F, true};  ///< what is narrower than two of it is left out of the mesh, though not of the lobes
-  int fade = 4;          ///< frames over which one segment takes the place of another
-  bool loops = false;    ///< the last frames fade into the first ones
-  int frames = 60;       ///< of a grown cloud
+  int fade = 4;                ///< frames over which one segment takes the place of another
+  bool loops = false;          ///< the last frames fade into the first ones
+  int frames = 60;             ///< of a grown cloud
   struct Varied {
     std::string option;
     double from = 0, to = 0;

@@ -351,13 +351,13 @@ Image blended(Image first, const Image& second, float share) {
 
 // The picture of a scene's view, before it is dithered for 8 bits. `extra`, if given, receives the files of --channels and --steps.
 Image drawWithoutFades(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, StageSeconds& seconds,
-                  std::vector<NamedFile>* extra) {
+                       std::vector<NamedFile>* extra) {
   const Camera camera = cameraFor(scene, instances, turn.now);
   requirePictureMemory(scene, withLevels(instances, camera), camera);
   if (scene.view.plain) {
     const BakedMesh& mesh = *instances.front().mesh;
     return toneMap(mesh.impostor ? renderImpostor(*mesh.impostor, camera, scene.light) : renderLobe(mesh, camera, scene.light),
-                            scene.view.exposure);
+                   scene.view.exposure);
   }
   DrawnParts parts;
   Image picture = drawScene(scene, instances, turn, parts);

@@ -1,5 +1,5 @@
-// From each key, the next one is as far away as all frames between are near enough. Each distance is tried first that the key before had, and
-// every frame between the keys that are chosen has been compared.
+// From each key, the next one is as far away as all frames between are near enough. Each distance is tried first that the key before had,
+// and every frame between the keys that are chosen has been compared.
 #include "pipeline/sequence/choose_keys.h"
 
 #include <algorithm>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "bake/lobe/sweep.h"
 #include "core/lobe_lighting.h"
 #include "core/parallel.h"
-#include "bake/lobe/sweep.h"
 #include "preview/compare/popping.h"
 
 namespace cloudbake {

@@ -13,8 +13,8 @@ struct BlendFigures {
   double transmittance_rms = 0;  ///< of T, over vertices and lights from everywhere
 };
 
-/// The keys of a segment, as indices of its frames: the first and the last one, and as few others as are needed so that no picture of a frame
-/// changes by more than `most_change`, where the longest side covers `pixels` pixels. `figures` gets those of all frames.
+/// The keys of a segment, as indices of its frames: the first and the last one, and as few others as are needed so that no picture of a
+/// frame changes by more than `most_change`, where the longest side covers `pixels` pixels. `figures` gets those of all frames.
 std::vector<size_t> chooseKeys(const CloudSequence& sequence, const SequenceSegment& all, int pixels, double most_change,
                                std::vector<BlendFigures>& figures);
 

@@ -124,7 +124,8 @@ class Frames {
     });
     for (size_t k = 0; k < missing.size(); ++k) {
       if (errors[k]) std::rethrow_exception(errors[k]);
-      if (const auto known = hashes_.find(missing[k]); known != hashes_.end() && !inputs_[missing[k]].file.empty() && known->second.own != fresh[k]->hash)
+      if (const auto known = hashes_.find(missing[k]);
+          known != hashes_.end() && !inputs_[missing[k]].file.empty() && known->second.own != fresh[k]->hash)
         throw changedWhileRead(inputs_[missing[k]].file);
       loaded_.emplace(missing[k], std::move(fresh[k]));
     }
@@ -243,7 +244,8 @@ Held heldSettings(const std::vector<FrameInput>& inputs, const Settings& setting
   lobe.exponent = held.parameters.shape.exponent, lobe.bias = Length{held.parameters.shape.bias, false};
   lobe.extinction_range = lobe.fit ? std::pair(held.parameters.extinction_low, held.parameters.extinction_high)
                                    : std::pair(held.parameters.extinction, held.parameters.extinction);
-  held.text = buildHash() + writeInfo(held.info).dump() + fmt::format(" {} {}", points.surface.positions.size(), held.settings.source.volume.iso.value_or(0));
+  held.text = buildHash() + writeInfo(held.info).dump() +
+              fmt::format(" {} {}", points.surface.positions.size(), held.settings.source.volume.iso.value_or(0));
   for (const Given& one : given)
     if (!(one.option->bits & kOfRun)) held.text += fmt::format("\n{}={}", one.option->name, one.value);
   watch.lap(report.seconds, "parameters");
@@ -255,7 +257,12 @@ Held heldSettings(const std::vector<FrameInput>& inputs, const Settings& setting
 class Follower {
  public:
   Follower(const std::vector<FrameInput>& inputs, const Held& held, std::span<const Given> given, BakeReport& report, Stopwatch& watch)
-      : inputs_(inputs), held_(held), frames_(inputs, held.settings, given, true), cache_(cloudCacheFolder()), report_(report), watch_(watch) {}
+      : inputs_(inputs),
+        held_(held),
+        frames_(inputs, held.settings, given, true),
+        cache_(cloudCacheFolder()),
+        report_(report),
+        watch_(watch) {}
 
   std::vector<FollowedSegment> follow() {
     begin(0, 0);
@@ -268,6 +275,12 @@ class Follower {
       frames_.dropBefore(end - std::min(end, size_t(held_.settings.sequence.fade) + 1));
     }
     return std::move(segments_);
+  }
+
+  std::string hashOfAll() {
+    std::string all;
+    for (size_t i = 0; i < inputs_.size(); ++i) all += frames_.hashOf(i);
+    return hashBytes(all);
   }
 
  private:
@@ -297,9 +310,10 @@ class Follower {
   std::string keyAfter(const std::string& key, size_t i) { return hashBytes(key + frames_.hashOf(i)); }
 
   void keep(size_t segment, size_t i, Record record, bool at_front, const std::string& key) {
-    for (const auto& [kind, entry] : record.warnings.entries()) report_.warnings.add(kind, inputs_[i].name + ": " + entry.first, entry.count);
-    FollowedFrame frame{i, {inputs_[i].frame, std::move(record.positions), {}, std::move(record.lobes)}, record.figures, record.topology,
-                        record.was_kept};
+    for (const auto& [kind, entry] : record.warnings.entries())
+      report_.warnings.add(kind, inputs_[i].name + ": " + entry.first, entry.count);
+    FollowedFrame frame{
+        i, {inputs_[i].frame, std::move(record.positions), {}, std::move(record.lobes)}, record.figures, record.topology, record.was_kept};
     std::vector<FollowedFrame>& all = segments_[segment].frames;
     const auto at = at_front ? all.insert(all.begin(), std::move(frame)) : all.insert(all.end(), std::move(frame));
     if (at_front)
@@ -390,7 +404,8 @@ class Follower {
     FollowingMesh mesh({frame.key.positions, {}, segment.triangles});
     frame.key.lobes = lobesAt(mesh.mesh(), *loaded.field, held_.settings.lobe, parameters, report.warnings).lobes;
     if (held_.settings.lobe.smooth > 0) smoothLobes(frame.key.lobes, mesh.mesh(), held_.settings.lobe.smooth);
-    cache_.add(place.key, bytesOf({segment.triangles, frame.key.positions, frame.key.lobes, frame.figures, frame.topology, loaded.warnings, false}));
+    cache_.add(place.key,
+               bytesOf({segment.triangles, frame.key.positions, frame.key.lobes, frame.figures, frame.topology, loaded.warnings, false}));
   }
 
   const std::vector<FrameInput>& inputs_;
@@ -409,7 +424,9 @@ class Follower {
 FollowedFrames followFrames(const std::vector<FrameInput>& frames, const Settings& settings, std::span<const Given> given,
                             BakeReport& report, Stopwatch& watch) {
   const Held held = heldSettings(frames, settings, given, report, watch);
-  FollowedFrames followed{held.info, Follower(frames, held, given, report, watch).follow()};
+  Follower follower(frames, held, given, report, watch);
+  FollowedFrames followed{held.info, follower.follow()};
+  followed.info.input_hash = follower.hashOfAll();
   for (FollowedSegment& segment : followed.segments)
     for (FollowedFrame& frame : segment.frames) {
       FollowingMesh mesh({frame.key.positions, {}, segment.triangles});

@@ -83,8 +83,9 @@ std::vector<fs::path> filesOfInput(const fs::path& input) {
       return is_wanted;
     });
     if (kinds.size() > 1)
-      throw InputError(input.string(), fmt::format("has frames of several kinds ({}, {}): name those of one, such as '{}'", kinds.begin()->second.filename().string(),
-                                                   kinds.rbegin()->second.filename().string(), (input / ("*" + kinds.begin()->first)).string()));
+      throw InputError(input.string(), fmt::format("has frames of several kinds ({}, {}): name those of one, such as '{}'",
+                                                   kinds.begin()->second.filename().string(), kinds.rbegin()->second.filename().string(),
+                                                   (input / ("*" + kinds.begin()->first)).string()));
     return files;
   }
   const fs::path folder = input.has_parent_path() ? input.parent_path() : fs::path(".");
@@ -93,7 +94,8 @@ std::vector<fs::path> filesOfInput(const fs::path& input) {
     std::set<fs::path> searched;
     return filesMatching(input, searched);
   }
-  std::vector<fs::path> files = filesIn(folder, [&](const fs::path& file) { return std::regex_match(file.filename().string(), *numbered); });
+  std::vector<fs::path> files =
+      filesIn(folder, [&](const fs::path& file) { return std::regex_match(file.filename().string(), *numbered); });
   if (!input.has_parent_path())
     for (fs::path& file : files) file = file.filename();
   return files;
@@ -105,18 +107,25 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
   std::vector<std::pair<int64_t, fs::path>> numbered;
   for (const fs::path& file : filesOfInput(input)) {
     const auto number = numberIn(file);
-    if (!number) throw InputError(file.string(), "has no number in its name, so that its place among the frames is not known: rename it, or name the others by a pattern such as 'smoke.####.vdb'");
+    if (!number)
+      throw InputError(file.string(),
+                       "has no number in its name, so that its place among the frames is not known: rename it, or name the others by a "
+                       "pattern such as 'smoke.####.vdb'");
     numbered.emplace_back(*number, file);
   }
   std::sort(numbered.begin(), numbered.end());
   if (numbered.size() < 2)
-    throw InputError(input.string(), fmt::format("{} found, and a sequence has at least two: give a folder, or a pattern in quotes such as 'smoke.####.vdb'",
-                                                 numbered.empty() ? "no frame was" : "only one frame was"));
+    throw InputError(
+        input.string(),
+        fmt::format("{} found, and a sequence has at least two: give a folder, or a pattern in quotes such as 'smoke.####.vdb'",
+                    numbered.empty() ? "no frame was" : "only one frame was"));
   std::vector<FrameInput> frames;
   for (size_t i = 0; i < numbered.size(); ++i) {
     const auto& [number, file] = numbered[i];
     if (i > 0 && number == numbered[i - 1].first)
-      throw InputError(file.string(), fmt::format("has the same number as {}: name the frames of one sequence by a pattern such as 'smoke.####.vdb'", numbered[i - 1].second.filename().string()));
+      throw InputError(file.string(),
+                       fmt::format("has the same number as {}: name the frames of one sequence by a pattern such as 'smoke.####.vdb'",
+                                   numbered[i - 1].second.filename().string()));
     if (!canBeBaked(file)) throw InputError(file.string(), "is neither a volume (VDB) nor a sculpt that can be baked");
     frames.push_back({double(number - numbered.front().first), file.string(), file});
   }
@@ -129,7 +138,8 @@ std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const fs::
     FrameInput frame{double(i), fmt::format("{}, frame {}", input.string(), i), {}, {}};
     for (const auto& [key, from, to] : settings.varied) {
       const Option* option = findOption(key, kGrow);
-      if (!option || option->bits & kOfRun) throw UsageError(fmt::format("--vary: grow has no option '{}': `cloudbake grow --help-all` lists them", key));
+      if (!option || option->bits & kOfRun)
+        throw UsageError(fmt::format("--vary: grow has no option '{}': `cloudbake grow --help-all` lists them", key));
       const double value = from + (to - from) * i / (settings.frames - 1);
       const bool is_whole = option->value.form.kind == ValueForm::kWhole || key == "generations";
       frame.varied.push_back({option, is_whole ? fmt::format("{:.0f}", value) : shortestText(float(value)), "", 0, 0});

@@ -14,16 +14,16 @@ namespace cloudbake {
 
 /// A frame's place in time and what it is made of.
 struct FrameInput {
-  double frame = 0;                 ///< counted from the first one
-  std::string name;                 ///< for messages
-  std::filesystem::path file;       ///< empty for a grown cloud
-  std::vector<Given> varied = {};   ///< options of a grown cloud that this frame sets
+  double frame = 0;                ///< counted from the first one
+  std::string name;                ///< for messages
+  std::filesystem::path file;      ///< empty for a grown cloud
+  std::vector<Given> varied = {};  ///< options of a grown cloud that this frame sets
 };
 
 /// The files that an input names, by number: of a folder, those that can be baked; of a pattern, `#` stands for a digit and `####` for at
-/// least four, `%d` and `%04d` likewise, or it is one of io/file/find_files.h. The last number in a name counts; missing numbers are gaps in
-/// time. Throws InputError for fewer than two files, for files without a number, for two of one number, and for a folder with several kinds
-/// of files.
+/// least four, `%d` and `%04d` likewise, or it is one of io/file/find_files.h. The last number in a name counts; missing numbers are gaps
+/// in time. Throws InputError for fewer than two files, for files without a number, for two of one number, and for a folder with several
+/// kinds of files.
 std::vector<FrameInput> frameFiles(const std::filesystem::path& input);
 
 /// `count` frames of a grown cloud, whose options change evenly from the first value of each of settings.sequence.varied to the second.

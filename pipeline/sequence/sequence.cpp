@@ -21,7 +21,9 @@ void tellEvents(const FollowedFrames& followed, const std::vector<FrameInput>& i
   std::vector<SurfaceTopology> topologies(inputs.size());
   for (const FollowedSegment& segment : followed.segments)
     for (const FollowedFrame& frame : segment.frames) topologies[frame.frame] = frame.topology;
-  const auto text = [](const SurfaceTopology& t) { return counted(t.shells, "part", "parts") + ", " + counted(t.handles, "hole", "holes"); };
+  const auto text = [](const SurfaceTopology& t) {
+    return counted(t.shells, "part", "parts") + ", " + counted(t.handles, "hole", "holes");
+  };
   std::map<size_t, size_t> begins;  // segment by the frame at which it is seen alone
   for (size_t s = 1; s < followed.segments.size(); ++s) begins[followed.segments[s - 1].frames.back().frame] = s;
   for (size_t i = 1; i < inputs.size(); ++i) {
@@ -32,7 +34,8 @@ void tellEvents(const FollowedFrames& followed, const std::vector<FrameInput>& i
     if (has_changed) event += text(topologies[i - 1]) + " become " + text(topologies[i]);
     if (begun != begins.end()) {
       const auto& segment = followed.segments[begun->second];
-      event += fmt::format("{}segment {} has faded in since frame {:g}", has_changed ? "; " : "", begun->second + 1, segment.frames.front().key.frame);
+      event += fmt::format("{}segment {} has faded in since frame {:g}", has_changed ? "; " : "", begun->second + 1,
+                           segment.frames.front().key.frame);
     } else {
       event += "; the mesh goes on";
     }
@@ -63,8 +66,8 @@ BakedSequence bakeSequence(const std::vector<FrameInput>& frames, const Settings
     for (size_t i = 0; i < own.frames.size(); ++i) {
       const FollowedFrame& frame = own.frames[i];
       const bool is_key = std::binary_search(keys.begin(), keys.end(), i);
-      baked.frames.push_back({frames[frame.frame].name, frames[frame.frame].frame, s, is_key, frame.figures, frame.topology, blends[i].change,
-                              blends[i].transmittance_rms, frame.was_kept});
+      baked.frames.push_back({frames[frame.frame].name, frames[frame.frame].frame, s, is_key, frame.figures, frame.topology,
+                              blends[i].change, blends[i].transmittance_rms, frame.was_kept});
     }
     SequenceSegment kept{own.triangles, {}};
     for (const size_t key : keys) kept.keys.push_back(std::move(all.keys[key]));
@@ -88,10 +91,12 @@ std::string sequenceText(const BakedSequence& baked) {
     most.transmittance_rms = std::max(most.transmittance_rms, frame.transmittance_rms);
     most.follow.distance.rms = std::max(most.follow.distance.rms, frame.follow.distance.rms);
   }
-  std::string text = figureLine("sequence", "{} frames at {:g} per second, {} {}, {} keys{}", size_t(sequence.segments.back().last()) + 1,
-                                sequence.frames_per_second, sequence.segments.size(), sequence.segments.size() == 1 ? "segment" : "segments",
-                                keys, sequence.loops ? fmt::format(", loops after {:g}", sequence.period) : "");
-  text += figureLine("errors", "at most {:.2f} of 255 of a picture and {:.4f} of T by blending; {:.2f} % of the longest side to the surface, rms",
+  std::string text =
+      figureLine("sequence", "{} frames at {:g} per second, {} {}, {} keys{}", size_t(sequence.segments.back().last()) + 1,
+                 sequence.frames_per_second, sequence.segments.size(), sequence.segments.size() == 1 ? "segment" : "segments", keys,
+                 sequence.loops ? fmt::format(", loops after {:g}", sequence.period) : "");
+  text += figureLine("errors",
+                     "at most {:.2f} of 255 of a picture and {:.4f} of T by blending; {:.2f} % of the longest side to the surface, rms",
                      most.change, most.transmittance_rms, 100 * most.follow.distance.rms);
   if (kept > 0) text += figureLine("kept", "{} of {} frames were baked before", kept, baked.frames.size());
   for (const std::string& event : baked.events) text += figureLine("event", "{}", event);
@@ -105,7 +110,8 @@ Json sequenceJson(const BakedSequence& baked) {
   for (const SequenceSegment& segment : sequence.segments) {
     Json keys = Json::array();
     for (const SequenceKey& key : segment.keys) keys.push_back(key.frame);
-    json["segments"].push_back({{"vertices", segment.keys.front().positions.size()}, {"triangles", segment.triangles.size()}, {"keys", keys}});
+    json["segments"].push_back(
+        {{"vertices", segment.keys.front().positions.size()}, {"triangles", segment.triangles.size()}, {"keys", keys}});
   }
   json["events"] = baked.events;
   json["frames"] = Json::array();

@@ -171,7 +171,7 @@ std::vector<SizeChange> Popping::changesByImpostor(const BakedMesh& level) const
 
 struct SidePictures::Side {
   Camera camera;
-  Image sky;        // with one ray per pixel, twice as large
+  Image sky;  // with one ray per pixel, twice as large
   Image half_sky, half_tones;
 };
 

@@ -39,7 +39,8 @@ float meanLongestSide(std::span<const Instance> instances) {
       sides[i] = instance.scattered->longest_side;
       return;
     }
-    const Box box = instance.whole ? placedBox(instance) : drawnBox((instance.sized_as ? instance.sized_as : instance.mesh)->surface, instance.to_world);
+    const Box box = instance.whole ? placedBox(instance)
+                                   : drawnBox((instance.sized_as ? instance.sized_as : instance.mesh)->surface, instance.to_world);
     if (!box.empty()) sides[i] = box.longestSide();
   });
   float sum = 0;

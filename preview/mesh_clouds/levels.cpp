@@ -8,7 +8,10 @@
 namespace cloudbake {
 
 float longestStretched(const Instance& instance) {
-  const Vec3 own = (instance.scattered ? instance.scattered->own : instance.whole ? *instance.whole : drawnBox(instance.mesh->surface)).size();
+  const Vec3 own = (instance.scattered ? instance.scattered->own
+                    : instance.whole   ? *instance.whole
+                                       : drawnBox(instance.mesh->surface))
+                       .size();
   float longest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 unit{float(axis == 0), float(axis == 1), float(axis == 2)};

@@ -62,10 +62,10 @@ struct Instance {
   bool is_seen = true;                                ///< else nothing of it is in the picture, and it is not drawn
   const BakedMesh* sized_as = nullptr;                ///< the full mesh, where `mesh` is a level of it
   // Of a cloud that changes (core/sequence.h):
-  std::optional<Box> whole = std::nullopt;            ///< of the mesh at all times, in its own space
-  std::shared_ptr<const BakedMesh> now = nullptr;     ///< owns `mesh`
-  std::shared_ptr<const BakedMesh> before = nullptr;  ///< what it fades from; null: it does not fade
-  float before_share = 0;                             ///< of the picture with `before` in the place of `mesh`
+  std::optional<Box> whole = std::nullopt;                   ///< of the mesh at all times, in its own space
+  std::shared_ptr<const BakedMesh> now = nullptr;            ///< owns `mesh`
+  std::shared_ptr<const BakedMesh> before = nullptr;         ///< what it fades from; null: it does not fade
+  float before_share = 0;                                    ///< of the picture with `before` in the place of `mesh`
   std::shared_ptr<const ShadowCaster> own_caster = nullptr;  ///< owns `caster`
 };
 

@@ -10,7 +10,7 @@ namespace cloudbake {
 
 /// What the texels' numbers stand for.
 struct KeyTextureScale {
-  Box box;           ///< of all positions: 0 … 65535 of each axis is its low … its high corner
+  Box box;            ///< of all positions: 0 … 65535 of each axis is its low … its high corner
   float densest = 0;  ///< the largest d: 0 … 65535 is the root of d / densest
 };
 

@@ -199,10 +199,12 @@ Image pictureOf(const std::filesystem::path& file, const Json& json, std::string
     if (image.value("name", "") != kPictureName) continue;
     const Json& view = json.at("bufferViews").at(size_t(wholeNumber(image.at("bufferView"))));
     const auto offset = uint64_t(wholeNumber(view, "byteOffset", 0)), size = uint64_t(wholeNumber(view.at("byteLength")));
-    if (offset > binary.size() || size > binary.size() - offset) throw InputError(file.string(), "the picture of its keys reaches beyond the file");
+    if (offset > binary.size() || size > binary.size() - offset)
+      throw InputError(file.string(), "the picture of its keys reaches beyond the file");
     return decodePng(binary.substr(offset, size), file.string(), memory_limit);
   }
-  throw InputError(file.string(), "the sequence has no picture of its keys: a tool has removed it; use the file that `cloudbake sequence` wrote");
+  throw InputError(file.string(),
+                   "the sequence has no picture of its keys: a tool has removed it; use the file that `cloudbake sequence` wrote");
 }
 
 // The key of a mesh: its base, or its base and one target.
@@ -294,8 +296,11 @@ SequenceSegment readSegment(const std::filesystem::path& file, const Json& own, 
   }
   for (size_t k = 0; k < frames.size(); ++k) {
     const double frame = frames[k].get<double>();
-    if (!std::isfinite(frame) || frame < 0 || (k > 0 && !(frame > segment.keys.back().frame))) refuse("the frames of a segment are not in order");
-    SequenceKey key = picture ? keyOfTexture(picture->image, place, int(k), picture->scale) : k == 0 ? reader.base() : reader.target(k - 1, frame);
+    if (!std::isfinite(frame) || frame < 0 || (k > 0 && !(frame > segment.keys.back().frame)))
+      refuse("the frames of a segment are not in order");
+    SequenceKey key = picture  ? keyOfTexture(picture->image, place, int(k), picture->scale)
+                      : k == 0 ? reader.base()
+                               : reader.target(k - 1, frame);
     key.frame = frame;
     for (size_t v = 0; v < vertices; ++v)
       if (!isFinite(key.positions[v]) || !isFinite(key.lobes[v].direction) || !std::isfinite(key.lobes[v].thickness))
@@ -319,8 +324,10 @@ std::string encodeSequence(const CloudSequence& sequence, SequenceForm form) {
     places = placesInTexture(sequence);
     scale = scaleOfTexture(sequence);
     if (rowsOfTexture(places) > kMostSequenceRows)
-      throw InputError("", fmt::format("the picture of the keys would have {} rows, but GPUs take at most {}: use fewer --vertices, or allow more --change",
-                                       rowsOfTexture(places), kMostSequenceRows));
+      throw InputError(
+          "",
+          fmt::format("the picture of the keys would have {} rows, but GPUs take at most {}: use fewer --vertices, or allow more --change",
+                      rowsOfTexture(places), kMostSequenceRows));
   }
   json["asset"]["extras"]["cloudbake"] = infoOf(sequence, form, places, scale);
   Json nodes = Json::array(), roots = Json::array(), meshes = Json::array(), animation = {{"name", "sequence"}};
@@ -380,7 +387,8 @@ CloudSequence decodeSequence(const std::filesystem::path& file, std::string_view
     sequence.frames_per_second = own.at("frames_per_second").get<double>();
     sequence.loops = own.at("loops").get<bool>();
     sequence.period = own.at("period").get<double>();
-    if (!(sequence.frames_per_second > 0) || !std::isfinite(sequence.frames_per_second) || !(sequence.period >= 0) || !std::isfinite(sequence.period))
+    if (!(sequence.frames_per_second > 0) || !std::isfinite(sequence.frames_per_second) || !(sequence.period >= 0) ||
+        !std::isfinite(sequence.period))
       throw InputError(file.string(), std::string("frames_per_second or the period of the sequence is out of range") + kCure);
     std::optional<KeyPicture> picture;
     if (own.at("keys") == "picture") {

@@ -11,7 +11,7 @@
 namespace cloudbake {
 namespace {
 
-constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kCheck, kView, kShader, kShadow, kImpostor, kPlan};
+constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kCheck, kView, kShader, kShadow, kImpostor, kPlan, kSequence};
 
 const Option& row(const std::string& name) {
   const size_t at = name.find('@');

@@ -1,0 +1,199 @@
+// Sequences from files to keys.
+#include "pipeline/sequence/sequence.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "io/file/write_file.h"
+#include "io/gltf/sequence/sequence_file.h"
+#include "pipeline/sequence/choose_keys.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SequenceTest : public testing::Test {
+ protected:
+  SequenceTest() { setenv("XDG_CACHE_HOME", file("cache").c_str(), 1); }
+  ~SequenceTest() override { unsetenv("XDG_CACHE_HOME"); }
+
+  fs::path file(const std::string& name) const { return folder_.path / name; }
+  void touch(const std::string& name) const {
+    createFolder(file(name).parent_path());
+    writeFileAtomically(file(name), "");
+  }
+  std::vector<std::string> namesOf(const std::string& input) const {
+    std::vector<std::string> names;
+    for (const FrameInput& frame : frameFiles(file(input)))
+      names.push_back(fmt::format("{:g} {}", frame.frame, frame.file.filename().string()));
+    return names;
+  }
+  std::string refusal(const std::string& input) const {
+    return refusalOf<InputError>([&] { frameFiles(file(input)); });
+  }
+
+  // Frames of a body, as OBJ.
+  void write(int frames, const std::function<SurfaceMesh(int)>& body) const {
+    createFolder(file("f"));
+    for (int i = 0; i < frames; ++i) writeFileAtomically(file(fmt::format("f/b.{:03}.obj", i)), objText(body(i)));
+  }
+  BakedSequence baked(const std::vector<std::string>& texts) const {
+    const std::vector<FrameInput> frames = frameFiles(file("f"));
+    std::vector<std::string> all{"vertices=400", "voxels=40", "pixels=64", "rays=32"};
+    all.insert(all.end(), texts.begin(), texts.end());
+    const std::vector<Given> given = options(all, kSequence);
+    BakeReport report;
+    Stopwatch watch;
+    return bakeSequence(frames, resolve(sourceOf(SourceKind::kSculpt, frames.front().file), given), given, report, watch);
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(SequenceTest, FramesAreFilesByTheirNumbers) {
+  for (const char* name : {"a/s.8.vdb", "a/s.10.vdb", "a/s.0009.vdb", "a/t.10.vdb", "a/note.txt", "a/.s.11.vdb"}) touch(name);
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(namesOf("a/s.#.vdb"), (Names{"0 s.8.vdb", "1 s.0009.vdb", "2 s.10.vdb"}));
+  EXPECT_EQ(namesOf("a/s.%d.vdb"), namesOf("a/s.#.vdb"));
+  EXPECT_EQ(namesOf("a/s.*.vdb"), namesOf("a/s.#.vdb"));
+  EXPECT_EQ(namesOf("a/s.##.vdb"), (Names{"0 s.0009.vdb", "1 s.10.vdb"})) << "at least two digits";
+  touch("b/x1.obj"), touch("b/x2.obj"), touch("b/x5.obj");
+  EXPECT_EQ(namesOf("b"), (Names{"0 x1.obj", "1 x2.obj", "4 x5.obj"})) << "a gap in time";
+  touch("p/a+b(1).1.obj"), touch("p/a+b(1).2.obj");
+  EXPECT_EQ(namesOf("p/a+b(1).#.obj").size(), 2U) << "signs that patterns of other kinds know";
+}
+
+TEST_F(SequenceTest, RefusesFilesThatAreNoSequence) {
+  for (const char* name : {"a/s.1.vdb", "a/t.1.vdb", "c/1.obj", "c/2.ply", "n/1.vdb", "n/s.vdb", "x/1.txt", "x/2.txt"}) touch(name);
+  EXPECT_TRUE(contains(refusal("a"), "has the same number as s.1.vdb"));
+  EXPECT_TRUE(contains(refusal("a/s.#.vdb"), "only one frame was found"));
+  EXPECT_TRUE(contains(refusal("a/q.####.vdb"), "no frame was found"));
+  EXPECT_TRUE(contains(refusal("c"), "has frames of several kinds (1.obj, 2.ply)"));
+  EXPECT_TRUE(contains(refusal("n"), "s.vdb: has no number in its name"));
+  EXPECT_TRUE(contains(refusal("x/#.txt"), "neither a volume (VDB) nor a sculpt"));
+  EXPECT_THROW(frameFiles(file("missing/s.#.vdb")), IoError);
+}
+
+TEST_F(SequenceTest, AGrownCloudVariesEvenly) {
+  SequenceSettings settings;
+  settings.frames = 5;
+  settings.varied = {{"size", 1, 3}, {"generations", 1, 3}};
+  const std::vector<FrameInput> frames = grownFrames(settings, "humilis");
+  ASSERT_EQ(frames.size(), 5U);
+  EXPECT_EQ(frames[1].varied[0].value, "1.5");
+  EXPECT_EQ(frames[4].varied[0].value, "3");
+  EXPECT_EQ(frames[1].varied[1].value, "2") << "whole numbers are rounded";
+  settings.varied = {{"nonsense", 1, 3}};
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { grownFrames(settings, "humilis"); }), "grow has no option 'nonsense'"));
+}
+
+// A ball that grows by its own scale is blended exactly, so that two keys are enough, and its lobe is known: towards the centre, 2 r thick.
+TEST_F(SequenceTest, AGrowingBallNeedsTwoKeys) {
+  write(9, [](int i) { return ballMesh(1 + 0.1F * float(i), 4); });
+  const BakedSequence sequence = baked({"lobe=mean"});
+  ASSERT_EQ(sequence.sequence.segments.size(), 1U);
+  const SequenceSegment& segment = sequence.sequence.segments.front();
+  EXPECT_LE(segment.keys.size(), 3U);
+  EXPECT_EQ(segment.last(), 8);
+  EXPECT_TRUE(sequence.events.empty());
+  EXPECT_EQ(sequence.frames.size(), 9U);
+  for (const FrameFigures& frame : sequence.frames) {
+    EXPECT_LE(frame.change, 1);
+    EXPECT_LT(frame.follow.distance.rms, 0.01);
+  }
+  for (const SequenceKey& key : segment.keys) {
+    const float radius = 1 + 0.1F * float(key.frame);
+    double angle = 0;
+    for (size_t v = 0; v < key.positions.size(); ++v) {
+      EXPECT_NEAR(length(key.positions[v]), radius, 0.03F * radius);
+      angle = std::max(angle, angleDegrees(key.lobes[v].direction, *normalized(-key.positions[v])));
+      EXPECT_NEAR(key.lobes[v].thickness, 2 * radius, 0.15F * radius) << "on this frame's own volume";
+    }
+    EXPECT_LT(angle, 8);
+  }
+}
+
+TEST_F(SequenceTest, KeysAreWhereBlendingErrs) {
+  // It grows, and stops growing in the middle.
+  CloudSequence sequence;
+  sequence.info = bakedBall().info;
+  SequenceSegment all;
+  for (int i = 0; i <= 8; ++i) {
+    const BakedMesh ball = bakedBall(1 + 0.2F * float(std::min(i, 4)), {}, 4);
+    all.triangles = ball.surface.triangles;
+    all.keys.push_back({double(i), ball.surface.positions, ball.surface.normals, ball.lobes});
+  }
+  std::vector<BlendFigures> figures;
+  EXPECT_EQ(chooseKeys(sequence, all, 64, 0.5, figures), (std::vector<size_t>{0, 4, 8}));
+  for (const BlendFigures& one : figures) EXPECT_LE(one.change, 0.5);
+  EXPECT_EQ(chooseKeys(sequence, all, 64, 255, figures), (std::vector<size_t>{0, 8}));
+  EXPECT_GT(figures[4].change, 1) << "the change is told, also where it is allowed";
+  EXPECT_GT(figures[4].transmittance_rms, 0.001);
+}
+
+// A ball is born beside another.
+SurfaceMesh withASecondBall(int i) {
+  const SurfaceMesh ball = ballMesh(1, 4, {0.02F * float(i), 0, 0});
+  return i < 4 ? ball : merged(ball, ballMesh(0.3F + 0.05F * float(i), 4, {2.5F, 0, 0}));
+}
+
+TEST_F(SequenceTest, ABirthBeginsASegmentThatFadesIn) {
+  write(9, withASecondBall);
+  const BakedSequence sequence = baked({"fade=2"});
+  ASSERT_EQ(sequence.sequence.segments.size(), 2U);
+  EXPECT_EQ(sequence.sequence.segments[0].last(), 4);
+  EXPECT_EQ(sequence.sequence.segments[1].first(), 2);
+  ASSERT_EQ(sequence.events.size(), 1U);
+  EXPECT_EQ(sequence.events[0], "frame 4: 1 part, 0 holes become 2 parts, 0 holes; segment 2 has faded in since frame 2");
+  // While it fades, no frame's pictures differ by more than its weight.
+  EXPECT_FLOAT_EQ(seenAt(sequence.sequence, 3.0 / 24).back().weight, 0.5F);
+}
+
+TEST_F(SequenceTest, UnchangedFramesAreNotBakedAgain) {
+  const auto growing = [](int i) { return ballMesh(1 + 0.05F * float(i), 4); };
+  write(7, growing);
+  const auto bytesOf = [](const BakedSequence& sequence) { return encodeSequence(sequence.sequence, SequenceForm::kMorph); };
+  const auto keptOf = [](const BakedSequence& sequence) {
+    return std::count_if(sequence.frames.begin(), sequence.frames.end(), [](const FrameFigures& frame) { return frame.was_kept; });
+  };
+  const BakedSequence first = baked({}), second = baked({});
+  EXPECT_EQ(keptOf(first), 0);
+  EXPECT_EQ(keptOf(second), 7);
+  EXPECT_EQ(bytesOf(first), bytesOf(second));
+  writeFileAtomically(file("f/b.005.obj"), objText(growing(6)));
+  const BakedSequence third = baked({});
+  EXPECT_EQ(keptOf(third), 5) << "the frame that has changed, and the one that is followed from it, are baked anew";
+  EXPECT_NE(bytesOf(third), bytesOf(first));
+  EXPECT_NE(third.sequence.info.input_hash, first.sequence.info.input_hash);
+  EXPECT_EQ(keptOf(baked({"rays=64"})), 0) << "other settings";
+  fs::remove_all(file("cache"));
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(bytesOf(baked({})), bytesOf(third)) << "on one thread";
+}
+
+TEST_F(SequenceTest, LoopsFadeTheirEnd) {
+  write(9, [](int i) { return ballMesh(1 + 0.05F * float(i), 3); });
+  const BakedSequence sequence = baked({"loop", "fade=3"});
+  EXPECT_TRUE(sequence.sequence.loops);
+  EXPECT_EQ(sequence.sequence.period, 5);
+  EXPECT_EQ(seenAt(sequence.sequence, 6.0 / 24).size(), 2U);
+}
+
+TEST_F(SequenceTest, NamesTheFrameThatCannotBeFollowed) {
+  write(3, [](int i) {
+    SurfaceMesh ball = ballMesh(1, 3);
+    if (i == 2) ball.triangles.resize(ball.triangles.size() / 2);
+    return ball;
+  });
+  EXPECT_TRUE(contains(refusalOf<InputError>([&] { baked({"close=reject"}); }), "b.002.obj: "));
+}
+
+}  // namespace
+}  // namespace cloudbake
