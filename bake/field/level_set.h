@@ -62,7 +62,7 @@ LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& setti
 LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings);
 
 /// The shape without what is narrower than two radii: first gaps, holes and folds are closed (a closing by a ball), then threads and sheets
-/// are removed (an opening). `radius` in voxels. Thick parts keep their place. May be empty.
+/// are removed (an opening). `radius` in voxels. Thick parts keep their place within a tenth of a voxel. May be empty.
 LevelSet withoutDetail(const LevelSet& level_set, double radius_voxels);
 
 /// Volume of the voxels whose centre is inside, world units³.

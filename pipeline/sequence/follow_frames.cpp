@@ -212,6 +212,12 @@ SurfaceMesh reduced(const SurfaceMesh& outer, const Settings& settings, Warnings
   return mesh;
 }
 
+// Whether an option only counts once the frames have been followed and baked.
+bool isAfterFollowing(const Option& option) {
+  constexpr std::string_view kNames[] = {"fps", "change", "pixels", "fade", "loop", "as"};
+  return option.commands == kSequence && std::find(std::begin(kNames), std::end(kNames), option.name) != std::end(kNames);
+}
+
 // The largest of the first, the middle and the last frame decides.
 Held heldSettings(const std::vector<FrameInput>& inputs, const Settings& settings, std::span<const Given> given, BakeReport& report,
                   Stopwatch& watch) {
@@ -247,7 +253,7 @@ Held heldSettings(const std::vector<FrameInput>& inputs, const Settings& setting
   held.text = buildHash() + writeInfo(held.info).dump() +
               fmt::format(" {} {}", points.surface.positions.size(), held.settings.source.volume.iso.value_or(0));
   for (const Given& one : given)
-    if (!(one.option->bits & kOfRun)) held.text += fmt::format("\n{}={}", one.option->name, one.value);
+    if (!(one.option->bits & kOfRun) && !isAfterFollowing(*one.option)) held.text += fmt::format("\n{}={}", one.option->name, one.value);
   watch.lap(report.seconds, "parameters");
   return held;
 }

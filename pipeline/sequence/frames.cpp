@@ -77,7 +77,7 @@ std::vector<fs::path> filesIn(const fs::path& folder, const std::function<bool(c
 std::vector<fs::path> filesOfInput(const fs::path& input) {
   if (fs::is_directory(input)) {
     std::map<std::string, fs::path> kinds;
-    const std::vector<fs::path> files = filesIn(input, [&](const fs::path& file) {
+    std::vector<fs::path> files = filesIn(input, [&](const fs::path& file) {
       const bool is_wanted = canBeBaked(file) && !file.filename().string().starts_with('.');
       if (is_wanted) kinds.emplace(lowerCase(file.extension().string()), file);
       return is_wanted;

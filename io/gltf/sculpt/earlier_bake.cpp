@@ -228,6 +228,8 @@ void removeEarlierBake(GltfDocument& document) {
   Json& json = document.json;
   if (isImpostorDocument(json))
     throw InputError(document.file.string(), "is an impostor, which is pictures and no mesh: give the sculpt or the baked asset");
+  if (isSequenceDocument(json))
+    throw InputError(document.file.string(), "is a sequence of clouds that were baked: bake the frames that it was made of");
   const auto info = readInfo(json);
   if (!info) return;
   document.was_baked = true;

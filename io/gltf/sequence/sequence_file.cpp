@@ -95,7 +95,10 @@ Json meshOf(const SequenceSegment& segment, int number, SequenceForm form, Docum
                      {"TEXCOORD_1", document.add(uvs.second, kFloat, "VEC2", kVertexTarget)}};
   if (form == SequenceForm::kTexture) {
     std::vector<Vec2> texels;
-    for (size_t v = 0; v < base.positions.size(); ++v) texels.push_back({float(v % kSequenceColumns), float(v / kSequenceColumns)});
+    for (size_t v = 0; v < base.positions.size(); ++v) {
+      const size_t row = v / kSequenceColumns;
+      texels.push_back({float(v % kSequenceColumns), float(row)});
+    }
     attributes["TEXCOORD_2"] = document.add(texels, kFloat, "VEC2", kVertexTarget);
   }
   std::vector<uint32_t> indices;

@@ -487,3 +487,25 @@ TEST(LevelSet, OpenMeshIsJudgedByItsVolume) {
   std::erase_if(half_ball.triangles, [&](const Triangle& t) { return half_ball.positions[t[0]].y < 0; });
   EXPECT_THROW(levelSetFromOpenMesh(half_ball, {}, warnings), InputError);
 }
+
+// A slab with a narrow gap and a wide one, and a sheet beside it: the narrow gap is closed, the sheet is gone, the rest stays.
+TEST(LevelSet, DetailIsWhatIsNarrowerThanTwoRadii) {
+  Warnings warnings;
+  const auto block = [](float from, float to) { return boxMesh({from, 0, 0}, {to, 2, 2}); };
+  const SurfaceMesh body = merged(merged(block(0, 1), block(1.06F, 2)), merged(block(2.4F, 3.4F), block(3.8F, 3.86F)));
+  LevelSetSettings fine, coarse;
+  fine.voxel_size = 0.02F, coarse.voxel_size = 0.04F;
+  const LevelSet all = levelSetFromMesh(body, fine, warnings), plain = withoutDetail(all, 0.06 / 0.02);
+  const auto isInside = [&](const LevelSet& level_set, Vec3 p) {
+    const Vec3 index = level_set.frame.toIndex(p);
+    const openvdb::Coord voxel(int(std::lround(index.x)), int(std::lround(index.y)), int(std::lround(index.z)));
+    return level_set.grid->vdb->tree().getValue(voxel) < 0;
+  };
+  for (const auto& [x, before, after] :
+       {std::tuple(0.5F, true, true), {1.03F, false, true}, {2.2F, false, false}, {3, true, true}, {3.83F, true, false}}) {
+    EXPECT_EQ(isInside(all, {x, 1, 1}), before) << x;
+    EXPECT_EQ(isInside(plain, {x, 1, 1}), after) << x;
+  }
+  const LevelSet ball = levelSetFromMesh(ballMesh(1, 5), coarse, warnings);
+  EXPECT_NEAR(insideVolume(withoutDetail(ball, 3)), insideVolume(ball), 0.012 * insideVolume(ball)) << "a tenth of a voxel";
+}

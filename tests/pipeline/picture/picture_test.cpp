@@ -1,6 +1,7 @@
 // The pictures of `preview`: sizes, the files beside them, motion, and what is refused.
 #include "pipeline/picture/picture.h"
 
+#include "io/gltf/sequence/sequence_file.h"
 #include "io/image/image.h"
 #include "pipeline/asset/asset.h"
 #include "pipeline/sources/sculpt.h"
@@ -166,6 +167,50 @@ TEST(Picture, MotionBeginsAtTheStartOfAScene) {
   EXPECT_EQ(timeOf({"turntable=3"}, false), 30);
   EXPECT_EQ(timeOf({"animate=3", "time=7"}, false), 7) << "a time that is asked for";
   EXPECT_EQ(timeOf({}, true), 30) << "the page of view";
+}
+
+// A ball that grows from 1 to 2 in its first second, and fades to a ball of 1 during the next.
+fs::path growingBall(const TestFolder& folder) {
+  const auto keyOf = [](double frame, float radius) {
+    const BakedMesh ball = bakedBall(radius, {}, 3);
+    return SequenceKey{frame, ball.surface.positions, ball.surface.normals, ball.lobes};
+  };
+  CloudSequence sequence;
+  sequence.info = bakedBall().info;
+  sequence.frames_per_second = 10;
+  sequence.period = 30;
+  const std::vector<Triangle> triangles = bakedBall(1, {}, 3).surface.triangles;
+  sequence.segments = {{triangles, {keyOf(0, 1), keyOf(10, 2), keyOf(20, 2)}}, {triangles, {keyOf(10, 1), keyOf(30, 1)}}};
+  return folder.write("grows.glb", encodeSequence(sequence, SequenceForm::kMorph));
+}
+
+TEST(Picture, ShowsACloudThatChangesAtItsTime) {
+  const TestFolder folder;
+  const fs::path file = growingBall(folder);
+  const auto differenceOf = [](const Image& a, const Image& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i) sum += double(length(a.pixels[i] - b.pixels[i]));
+    return sum / double(a.pixels.size());
+  };
+  const auto at = [&](const char* look, const char* time) {
+    return decoded(drawAsset(file, {std::string("look=") + look, std::string("time=") + time}).pictures.png);
+  };
+  const Image begins = at("plain", "0"), grown = at("plain", "1"), small = at("plain", "2");
+  EXPECT_GT(differenceOf(begins, grown), 0.02);
+  EXPECT_LT(differenceOf(begins, small), 1e-3) << "the camera is the same at all times";
+  EXPECT_EQ(at("plain", "9").pixels, small.pixels) << "it stays as it ends";
+  Image half = grown;
+  for (size_t i = 0; i < half.pixels.size(); ++i) half.pixels[i] = (grown.pixels[i] + small.pixels[i]) * 0.5F;
+  EXPECT_LT(differenceOf(at("plain", "1.5"), half), 1.5 / 255) << "halfway through a fade";
+  EXPECT_GT(differenceOf(at("painted", "0"), at("painted", "1")), 0.02);
+
+  const std::vector<Given> given = options({"animate=3", "look=plain"}, kPreview);
+  BakeReport report;
+  const Scenery scenery = readScenery(resolve(sourceOf(SourceKind::kSculpt, file), given), given, report);
+  EXPECT_EQ(filmOf(scenery.scene, true, true).moving.back(), "clouds that change");
+  Settings live = resolve(sourceOf(SourceKind::kSculpt, file), {});
+  live.picture.is_live = true;
+  EXPECT_TRUE(contains(refusalOf<InputError>([&] { readScenery(live, {}, report); }), "is a sequence, which the page does not play"));
 }
 
 TEST(Picture, ADaySunRisesAndSetsBelowTheHorizon) {

@@ -136,10 +136,10 @@ TEST_P(SequenceFile, RefusesWhatIsDamagedAndSaysWhy) {
       {[](Json& json) { std::swap(own(json)["segments"][0], own(json)["segments"][1]); }, "segments are not in order"},
       {[](Json& json) { own(json)["frames_per_second"] = 0; }, "out of range"},
       {[](Json& json) { json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_1"); }, "has no TEXCOORD_1"}};
-  for (const auto& [change, message] : damages) {
-    const std::string error = errorOf([&] { decodeSequence("a.glb", changed(GetParam(), change)); });
-    EXPECT_TRUE(error.starts_with("a.glb: ")) << message << ": " << error;
-    EXPECT_NE(error.find(message), std::string::npos) << message << ": " << error;
+  for (const Damage& damage : damages) {
+    const std::string error = errorOf([&] { decodeSequence("a.glb", changed(GetParam(), damage.change)); });
+    EXPECT_TRUE(error.starts_with("a.glb: ")) << damage.message << ": " << error;
+    EXPECT_NE(error.find(damage.message), std::string::npos) << damage.message << ": " << error;
   }
 }
 
