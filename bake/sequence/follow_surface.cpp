@@ -14,6 +14,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/shells.h"
 #include "bake/truth/surface_error.h"
+#include "core/parallel.h"
 #include "core/surface_points.h"
 #include "core/vertex_normals.h"
 
@@ -87,12 +88,14 @@ void FollowingMesh::place(std::vector<Vec3> positions) {
 // The mean of the neighbours' values, per vertex.
 std::vector<Vec3> FollowingMesh::averaged(const std::vector<Vec3>& values) const {
   std::vector<Vec3> means(values.size());
-  for (size_t v = 0; v < values.size(); ++v) {
-    Vec3 sum;
-    for (uint32_t i = first_[v]; i < first_[v + 1]; ++i) sum += values[neighbours_[i]];
-    const uint32_t count = first_[v + 1] - first_[v];
-    means[v] = count > 0 ? sum / float(count) : values[v];
-  }
+  parallelBlocks(values.size(), 1000, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) {
+      Vec3 sum;
+      for (uint32_t i = first_[v]; i < first_[v + 1]; ++i) sum += values[neighbours_[i]];
+      const uint32_t count = first_[v + 1] - first_[v];
+      means[v] = count > 0 ? sum / float(count) : values[v];
+    }
+  });
   return means;
 }
 
