@@ -56,7 +56,6 @@ BakedSequence bakeSequence(const std::vector<FrameInput>& frames, const Settings
   sequence.loops = settings.sequence.loops;
   const double last = frames.back().frame;
   sequence.period = sequence.loops ? last - std::min(double(settings.sequence.fade), last / 2) : last;
-  std::string hashes;
   for (size_t s = 0; s < followed.segments.size(); ++s) {
     FollowedSegment& own = followed.segments[s];
     SequenceSegment all{own.triangles, {}};
