@@ -54,8 +54,9 @@ function orderOf({ harmonic_order: order = 0 }) {
 }
 
 // The largest d of a packed asset, 0 of another one. A layout of a later version is refused.
-function densityMaxOf({ layout = 'lobe-uv', version = 1, density_max = 0 }) {
-  if (!['lobe-uv', 'lobe-packed'].includes(layout) || version !== 1)
+function densityMaxOf({ layout = 'lobe-uv', version = 1, density_max = 0 }, sequences) {
+  if (layout === 'lobe-sequence' && !sequences) throw new Error('the file is a sequence, which CloudSequence plays, in three.js only');
+  if (!['lobe-uv', 'lobe-packed', 'lobe-sequence'].includes(layout) || version !== 1)
     throw new Error(`asset.extras.cloudbake has the layout ${layout} ${version}, which this version does not know: bake the asset again`);
   const value = layout === 'lobe-packed' ? density_max : 0;
   if (typeof value !== 'number' || !Number.isFinite(Math.fround(value)) || (layout === 'lobe-packed' && !(value > 0)))
@@ -64,8 +65,8 @@ function densityMaxOf({ layout = 'lobe-uv', version = 1, density_max = 0 }) {
 }
 
 // The same as DEFAULTS from the JSON of a glTF file, and its harmonics, or null if cloudbake did not bake it. Throws if a number cannot be
-// used.
-export function settingsOf(json) {
+// used, and of a sequence unless it is asked for.
+export function settingsOf(json, { sequences = false } = {}) {
   const info = json.asset?.extras?.cloudbake;
   if (!info || info.layout === 'lobe-impostor') return null;
   const given = constantOf(info, 'extinction'), extinction = given > 0 ? given : DEFAULTS.extinction;
@@ -73,7 +74,7 @@ export function settingsOf(json) {
     exponent: constantOf(info, 'exponent'),
     bias: constantOf(info, 'bias'),
     extinction,
-    densityMax: densityMaxOf(info),
+    densityMax: densityMaxOf(info, sequences),
     uvSets: info.uv_sets ?? DEFAULTS.uvSets,
     ofVolume: info.fit_to === 'volume',
     harmonicOrder: orderOf(info),
@@ -131,6 +132,7 @@ export function addSoftSettings(Material) {
     });
 }
 export const SOFT_NAMES = Object.keys(SOFT);
+export const isSoftened = material => SOFT_NAMES.some(name => String(material[name]) !== String(SOFT[name]));
 
 // The uniforms of the soft look. `painted`: what the painted look needs while it draws, or null. `shown`: from and to which threshold the
 // mesh is drawn.

@@ -510,7 +510,7 @@ export class CloudbakeLoaderPlugin {
   async afterRoot(gltf) {
     const impostor = impostorSettingsOf(this.parser.json);
     if (impostor) return this.makeImpostor(gltf, impostor);
-    const settings = settingsOf(this.parser.json);
+    const settings = settingsOf(this.parser.json, { sequences: true });
     if (!settings) return;
     const names = settings.uvSets.map(nameOfSet), clouds = [], has = ({ geometry }, all) => all.every(name => geometry.hasAttribute(name));
     for (const scene of gltf.scenes) {

@@ -4,7 +4,7 @@ import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three';
 import { chunksOf, glbOf, valuesOf } from '../browser/glb.mjs';
 
 // The GLB with more bytes at the end of its buffer.
-function glbWith({ json, binary }, more = []) {
+export function glbWith({ json, binary }, more = []) {
   const longer = Buffer.concat([binary, ...more]);
   json.buffers[0].byteLength = longer.length;
   return glbOf({ json, binary: longer });
@@ -95,7 +95,7 @@ export function opaqueGlb(bytes, eye) {
 }
 
 // The triangles whose front is towards `eye`. A mirror turns fronts, as glTF says.
-function facing(positions, corners, matrix, eye) {
+export function facing(positions, corners, matrix, eye) {
   const points = Array.from({ length: positions.length / 3 }, (_, v) =>
     new Vector3(...positions.slice(3 * v, 3 * v + 3)).applyMatrix4(matrix)), kept = [];
   const sense = Math.sign(new Matrix3().setFromMatrix4(matrix).determinant());

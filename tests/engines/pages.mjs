@@ -20,6 +20,7 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/ja
 const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'three/examples/jsm/',
   '@babylonjs/core/': '@babylonjs/core/', '@babylonjs/loaders/': '@babylonjs/loaders/',
   'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/three/painted': 'cloudbake-materials/three_painted.js',
+  'cloudbake-materials/three/sequence': 'cloudbake-materials/three_sequence.js',
   'cloudbake-materials/three/shade': 'cloudbake-materials/three_shade.js',
   'cloudbake-materials/babylon/painted': 'cloudbake-materials/babylon_painted.js',
   'cloudbake-materials/babylon/shade': 'cloudbake-materials/babylon_shade.js',

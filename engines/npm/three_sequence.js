@@ -1,0 +1,123 @@
+// Clouds that change (`cloudbake sequence`), in three.js.
+import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh, Sphere, Vector3 } from 'three';
+import { isSoftened, settingsOf } from './asset.js';
+import { emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, seenAt, sequenceOf, writeKeyAt } from './sequence.js';
+import { CloudMaterial } from './three.js';
+
+// The names of the numbers of a key in a mesh of three.js, in a file, and how many a vertex has.
+const ATTRIBUTES = [['positions', 'position', 'POSITION', 3], ['normals', 'normal', 'NORMAL', 3], ['first', 'uv', 'TEXCOORD_0', 2],
+  ['second', 'uv1', 'TEXCOORD_1', 2]];
+
+function numbersOf(attribute, width) {
+  const numbers = new Float32Array(width * attribute.count);
+  for (let i = 0; i < numbers.length; ++i) numbers[i] = attribute.getComponent(Math.floor(i / width), i % width);
+  return numbers;
+}
+
+// The numbers of the attributes of a primitive or of one of its morph targets.
+async function keyOf(parser, attributes) {
+  const key = {};
+  for (const [name, , set, width] of ATTRIBUTES) {
+    if (attributes[set] === undefined)
+      throw new Error(`a key of the sequence has no ${set}: take the file that \`cloudbake sequence\` wrote`);
+    key[name] = numbersOf(await parser.getDependency('accessor', attributes[set]), width);
+  }
+  return key;
+}
+
+async function pictureOf(parser) {
+  const image = parser.json.images?.find(({ name }) => name === 'keys');
+  if (image?.bufferView === undefined)
+    throw new Error('the sequence has lost the picture of its keys: take the file that `cloudbake sequence` wrote');
+  return pixelsOfPng(await parser.getDependency('bufferView', image.bufferView));
+}
+
+// The bounds of a segment at all times: what lies between two keys is within them.
+function boundsOf(keys) {
+  const box = new Box3();
+  for (const { positions } of keys) box.union(new Box3().setFromArray(positions));
+  return { box, sphere: box.getBoundingSphere(new Sphere(new Vector3())) };
+}
+
+async function segmentOf(parser, sequence, segment, picture) {
+  const primitive = parser.json.meshes?.[segment.mesh]?.primitives[0];
+  if (!primitive) throw new Error('a segment of the sequence has no mesh: take the file that `cloudbake sequence` wrote');
+  const base = await keyOf(parser, primitive.attributes), targets = primitive.targets ?? [];
+  if (!picture && targets.length !== segment.frames.length - 1)
+    throw new Error('a key of the sequence has no morph target: take the file that `cloudbake sequence` wrote');
+  const keys = picture ? keysOfPicture(picture, sequence, segment, base.positions.length / 3)
+    : keysOfTargets(base, await Promise.all(targets.map(target => keyOf(parser, target))));
+  return { ...segment, keys, ...boundsOf(keys), index: await parser.getDependency('accessor', primitive.indices) };
+}
+
+// Of a material: its sequences that fade, and whether it was soft before. Only soft materials leave out pixels.
+/** @type {WeakMap<CloudMaterial, { fading: Set<object>, was_soft: boolean }>} */
+const fades = new WeakMap();
+
+function setFading(material, sequence, is_fading) {
+  const known = fades.get(material);
+  if (is_fading) {
+    const { fading } = known ?? { fading: new Set() };
+    if (!known) fades.set(material, { fading, was_soft: material.soft });
+    fading.add(sequence);
+    material.soft = true;
+  } else if (known?.fading.delete(sequence) && known.fading.size === 0) {
+    fades.delete(material);
+    material.soft = known.was_soft || isSoftened(material);
+  }
+}
+
+export class CloudSequence extends Group {
+  // From what GLTFLoader returns.
+  static async of(/** @type {import('three/addons/loaders/GLTFLoader.js').GLTF} */ { parser, userData }) {
+    const sequence = sequenceOf(parser.json);
+    if (!sequence) throw new Error('the file is no sequence: make one with `cloudbake sequence`');
+    const picture = sequence.form === 'picture' ? await pictureOf(parser) : null;
+    const segments = await Promise.all(sequence.segments.map(segment => segmentOf(parser, sequence, segment, picture)));
+    const settings = settingsOf(parser.json, { sequences: true });
+    return new CloudSequence({ ...sequence, segments }, userData.cloudMaterial ?? new CloudMaterial(settings));
+  }
+
+  constructor(sequence, material) {
+    super();
+    this.sequence = sequence;
+    this.material = material;
+    this.parts = sequence.segments.map(({ keys: [{ positions }], index, box, sphere }) => {
+      const key = emptyKey(positions.length / 3), geometry = new BufferGeometry().setIndex(index);
+      for (const [name, attribute, , width] of ATTRIBUTES)
+        geometry.setAttribute(attribute, new BufferAttribute(key[name], width).setUsage(DynamicDrawUsage));
+      Object.assign(geometry, { boundingBox: box.clone(), boundingSphere: sphere.clone() });
+      const mesh = new Mesh(geometry, material);
+      this.add(mesh);
+      return { mesh, key, frame: -1 };
+    });
+    this.update(0);
+  }
+
+  // Of a loop, after which it repeats; else of the last frame.
+  get duration() { return this.sequence.period / this.sequence.framesPerSecond; }
+
+  update(seconds) {
+    const seen = seenAt(this.sequence, seconds).filter(({ weight }) => weight > 0), later = seen.at(-1)?.weight;
+    for (const { mesh } of this.parts) mesh.visible = false;
+    seen.forEach(({ segment, frame }, i) => {
+      const part = this.parts[segment], { mesh } = part;
+      mesh.visible = true;
+      // The later one takes the pixels below its weight.
+      mesh.userData.cloudShown = i === seen.length - 1 ? [0, later] : [later, 1];
+      if (part.frame === frame) return;
+      writeKeyAt(this.sequence.segments[segment], frame, part.key);
+      part.frame = frame;
+      for (const [, attribute] of ATTRIBUTES) mesh.geometry.attributes[attribute].needsUpdate = true;
+    });
+    setFading(this.material, this, seen.length > 1);
+  }
+
+  // Another one of the same keys and the same material, which may be at another time.
+  clone() { return new CloudSequence(this.sequence, this.material).copy(this, false); }
+
+  dispose() {
+    setFading(this.material, this, false);
+    for (const { mesh } of this.parts) mesh.geometry.dispose();
+  }
+}

@@ -1,0 +1,256 @@
+// Sequences in three.js beside the pictures of `preview --time`.
+//   node tests/engines/sequence.mjs CLOUDBAKE SOURCE_FOLDER
+import { readFileSync, symlinkSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+import { SIZE, demand, pngValues, testPage } from '../browser/browser.mjs';
+import { changedGlb, chunksOf, glbOf, valuesOf } from '../browser/glb.mjs';
+import { folder, load, openEngine, packages, percent, run, serve, viewOf } from './pages.mjs';
+
+const { facing, glbWith } = await import('./assets.mjs');  // which needs three.js
+const { Matrix4, Vector3 } = await import('three');
+
+process.env.XDG_CACHE_HOME = folder;
+
+const NEAR = 0.99;      // of the values of the cloud are within 2 of preview's
+const CONTROL = 0.9;    // with a mistake fewer are
+const FADE_MEAN = 0.3;  // of 255: how far the mean of a fade is from preview's
+const ANGLES = ['20,8', '130,28'];
+const FORMS = { picture: 'picture', morph: 'morph targets' };
+
+// The rows of shaders/functions/tone.glsl, in the numbers of JavaScript.
+function toneOf(value) {
+  const film = Math.min(1, value * (2.51 * value + 0.03) / (value * (2.43 * value + 0.59) + 0.14));
+  return film <= 0.0031308 ? 12.92 * film : 1.055 * film ** (1 / 2.4) - 0.055;
+}
+const bits = linear => linear.map(value => 255 * Math.min(1, Math.max(0, toneOf(value))));
+
+// --- Files ---
+
+const read = name => readFileSync(join(folder, name));
+
+// The numbers of the attributes of a primitive or of a target.
+const keyOf = (chunks, attributes) => Object.fromEntries(Object.entries({ positions: 'POSITION', normals: 'NORMAL', first: 'TEXCOORD_0',
+  second: 'TEXCOORD_1' }).map(([name, set]) => [name, Float32Array.from(valuesOf(chunks, attributes[set]))]));
+
+// A sequence with its keys, by the module of the package.
+async function sequenceFrom(kit, name) {
+  const chunks = chunksOf(read(name)), { json, binary } = chunks, sequence = kit.sequenceOf(json);
+  let picture = null;
+  if (sequence.form === 'picture') {
+    const { byteOffset = 0, byteLength } = json.bufferViews[json.images[0].bufferView];
+    picture = await kit.pixelsOfPng(binary.subarray(byteOffset, byteOffset + byteLength));
+  }
+  const segments = sequence.segments.map(segment => {
+    const { attributes, targets = [] } = json.meshes[segment.mesh].primitives[0], base = keyOf(chunks, attributes);
+    const keys = picture ? kit.keysOfPicture(picture, sequence, segment, base.positions.length / 3)
+      : kit.keysOfTargets(base, targets.map(target => keyOf(chunks, target)));
+    return { ...segment, keys };
+  });
+  return { ...sequence, segments };
+}
+
+// A file of the box of all keys, for the camera of `preview`, which sees the whole of a sequence.
+function writeBox({ segments }, json) {
+  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (const { positions } of segments.flatMap(({ keys }) => keys))
+    positions.forEach((x, i) => {
+      box[0][i % 3] = Math.min(box[0][i % 3], x);
+      box[1][i % 3] = Math.max(box[1][i % 3], x);
+    });
+  const places = [0, 1, 2, 3, 4, 5, 6, 7].map(corner => [0, 1, 2].map(axis => box[corner >> axis & 1][axis]));
+  const floats = rows => Buffer.from(Float32Array.from(rows.flat()).buffer), middle = box[0].map((x, i) => (x + box[1][i]) / 2);
+  const normals = places.map(place => new Vector3(...place.map((x, i) => x - middle[i])).normalize().toArray());
+  const corners = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
+  const parts = [floats(places), floats(normals), floats(normals.map(([x, y]) => [x, y])), floats(normals.map(([, , z]) => [z, 1])),
+    Buffer.from(Uint16Array.from(corners).buffer)];
+  const { sequence, ...info } = json.asset.extras.cloudbake, starts = parts.map((_, i) => Buffer.concat(parts.slice(0, i)).length);
+  demand(sequence.segments.length === segments.length, `the sequence has ${segments.length} segments`);
+  const accessors = [['VEC3', 8], ['VEC3', 8], ['VEC2', 8], ['VEC2', 8], ['SCALAR', 36]].map(([type, count], i) =>
+    ({ bufferView: i, componentType: i < 4 ? 5126 : 5123, count, type, ...i === 0 ? { min: box[0], max: box[1] } : {} }));
+  writeFileSync(join(folder, 'box.glb'), glbOf({ binary: Buffer.concat(parts), json: {
+    asset: { version: '2.0', extras: { cloudbake: { ...info, layout: 'lobe-uv', version: 1 } } }, scene: 0, scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0 }], accessors, bufferViews: parts.map(({ length }, i) => ({ buffer: 0, byteOffset: starts[i], byteLength: length })),
+    buffers: [{ byteLength: Buffer.concat(parts).length }], materials: [{ name: 'cloud' }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0, NORMAL: 1, TEXCOORD_0: 2, TEXCOORD_1: 3 }, indices: 4, material: 0 }] }] } }));
+}
+
+// The sequence without the triangles that face away from the eye at a time: every ray only enters the cloud, so that preview draws the first
+// surface opaque.
+function writeOpaque(kit, name, sequence, seconds, eye, to) {
+  const asset = chunksOf(read(name)), { json, binary } = asset, more = [];
+  let end = binary.length;
+  for (const { segment, frame } of kit.seenAt(sequence, seconds)) {
+    const { keys, frames, mesh } = sequence.segments[segment], key = kit.emptyKey(keys[0].positions.length / 3);
+    kit.writeKeyAt({ keys, frames }, frame, key);
+    const [primitive] = json.meshes[mesh].primitives;
+    const kept = Uint32Array.from(facing(key.positions, valuesOf(asset, primitive.indices), new Matrix4(), new Vector3(...eye)));
+    json.bufferViews.push({ buffer: 0, byteOffset: end, byteLength: kept.byteLength });
+    more.push(Buffer.from(kept.buffer));
+    end += kept.byteLength;
+    primitive.indices = json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5125, count: kept.length,
+      type: 'SCALAR' }) - 1;
+  }
+  writeFileSync(join(folder, to), glbWith(asset, more));
+}
+
+// --- Without a browser ---
+
+const largestOf = (a, b) => a.reduce((most, x, i) => Math.max(most, Math.abs(x - b[i])), 0);
+
+// The keys of the two forms, and of the assets of `--as keys`, are the same within the steps of the picture; and times lead to segments.
+function keys(kit, of_picture, of_morph) {
+  const pairs = of_picture.segments.flatMap((segment, s) => segment.keys.map((key, k) => [key, of_morph.segments[s].keys[k]]));
+  const [low, high] = of_picture.box, step = Math.max(...low.map((x, i) => high[i] - x)) / 65535;
+  const off = name => Math.max(...pairs.map(([a, b]) => largestOf(a[name], b[name])));
+  demand(off('positions') < 0.6 * step && off('normals') < 0.02 && off('first') < 0.02 && off('second') < 0.02,
+    `${pairs.length} keys of both forms: positions differ by ${(off('positions') / step).toFixed(2)} steps, ` +
+    `normals by ${off('normals').toFixed(4)}, lobes by ${off('first').toFixed(4)} and ${off('second').toFixed(4)}`);
+  run('sequence', ...WORDS, '--as', 'keys', '-o', 'key.glb');
+  const padded = (number, digits) => String(number).padStart(digits, '0');
+  const exact = of_morph.segments.map(({ frames, keys: own }, s) => {
+    const chunks = chunksOf(read(`key_${padded(s + 1, 2)}_${padded(frames.at(-1), 4)}.glb`));
+    const asset = keyOf(chunks, chunks.json.meshes[0].primitives[0].attributes);
+    return Math.max(...['positions', 'normals', 'first', 'second'].map(name => largestOf(own.at(-1)[name], asset[name])));
+  });
+  demand(Math.max(...exact) < 1e-5, `the last keys of the segments are the assets of \`--as keys\`, off by ${Math.max(...exact)} at most`);
+}
+
+function times(kit, { segments, framesPerSecond, ...rest }) {
+  const sequence = { segments, framesPerSecond, ...rest }, at = frame => kit.seenAt(sequence, frame / framesPerSecond);
+  const [{ frames: [, ...one] }, { frames: [begin] }] = segments, end = one.at(-1), middle = at((begin + end) / 2), late = at(1e6);
+  demand(begin < end && middle.length === 2 && middle.every(({ weight }) => Math.abs(weight - 0.5) < 1e-9)
+    && middle[0].segment === 0 && at(end).length === 1 && at(end)[0].segment === 1 && late.length === 1
+    && late[0].frame === segments.at(-1).frames.at(-1), `in the middle of a fade two segments have the weight 0.5: ${JSON.stringify(middle)}`);
+  const loop = { framesPerSecond: 1, loops: true, period: 10, segments: [{ frames: [0, 6] }, { frames: [4, 12] }] };
+  demand(JSON.stringify(kit.seenAt(loop, 21)) === JSON.stringify([{ segment: 1, frame: 11, weight: 0.5 }, { segment: 0, frame: 1, weight: 0.5 }]),
+    'in a loop the last segment fades into the first frames');
+}
+
+// --- Pictures ---
+
+const insideOf = (values, without) => i => [0, 1, 2].some(c => Math.abs(values[i - i % 3 + c] - without[i - i % 3 + c]) > 1e-3);
+
+function compare(values, truth, counts) {
+  let near = 0, all = 0, largest = 0, sum = 0;
+  truth.forEach((value, i) => {
+    if (!counts(i)) return;
+    const difference = values[i] - value;
+    near += Math.abs(difference) <= 2.5, ++all;
+    largest = Math.max(largest, Math.abs(difference));
+    sum += difference;
+  });
+  return { near: near / all, largest, all, mean: sum / all };
+}
+
+const draw = (page, view) => page.evaluate(one => window.kit.draw(window.subjects.cloud, one), view);
+
+async function subjectOf(kit, page, name, sequence, seconds) {
+  const [camera, sun] = ANGLES, view = viewOf('box.glb', camera, sun);
+  writeOpaque(kit, name, sequence, seconds, view.camera.from, 'opaque.glb');
+  run('preview', 'opaque.glb', '--time', String(seconds), '--look', 'plain', '--camera', camera, '--sun', sun, '--size', SIZE.join('x'),
+    '-o', 'truth.png');
+  const described = await load(page, 'cloud', 'opaque.glb'), truth = await pngValues(page, join(folder, 'truth.png'));
+  const own = { ...view, seconds }, without = await draw(page, { ...own, hidden: true }), linear = await draw(page, own);
+  return { view: own, truth, described, without, linear, inside: insideOf(linear, without) };
+}
+
+async function pictures(kit, page, name, sequence, frames) {
+  const { framesPerSecond } = sequence;
+  for (const frame of frames) {
+    const { view, truth, linear, without, inside } = await subjectOf(kit, page, name, sequence, frame / framesPerSecond);
+    const all = compare(bits(linear), truth, () => true), own = compare(bits(linear), truth, inside);
+    demand(kit.seenAt(sequence, view.seconds).length === 1 && all.near >= NEAR && own.near >= NEAR && own.all > 10000,
+      `${name} at frame ${frame}: ${percent(all.near)} of values are within 2 of preview's, ${percent(own.near)} of the ${own.all} of the ` +
+      `cloud, off by ${own.largest.toFixed(1)} at most`);
+    if (frame !== frames[0]) continue;
+    const mistakes = { 'a third of a frame later': { seconds: (frame + 1 / 3) / framesPerSecond },
+      'the lobes of the first key': { tamper: 'first lobes' } };
+    for (const [what, change] of Object.entries(mistakes)) {
+      await load(page, 'cloud', 'opaque.glb');
+      const values = await draw(page, { ...view, ...change }), found = compare(bits(values), truth, insideOf(values, without));
+      demand(found.near < CONTROL, `control: ${name}, ${what}: ${percent(found.near)}`);
+    }
+  }
+}
+
+// Preview blends two pictures; here each pixel shows one of the meshes, in shares of its samples.
+async function fade(kit, page, name, sequence, frame) {
+  const { framesPerSecond } = sequence, seconds = frame / framesPerSecond, seen = kit.seenAt(sequence, seconds);
+  const { view, truth, linear, without, inside } = await subjectOf(kit, page, name, sequence, seconds);
+  const found = compare(bits(linear), truth, inside), of_truth = truth.filter((_, i) => inside(i));
+  const mean = values => values.reduce((sum, x) => sum + x, 0) / values.length;
+  demand(seen.length === 2 && Math.abs(found.mean) < FADE_MEAN, `${name} in a fade, at frame ${frame}, weight ${seen[1].weight.toFixed(2)}: ` +
+    `the mean of the ${found.all} values of the cloud is off by ${found.mean.toFixed(3)}, preview's is ${mean(of_truth).toFixed(1)}; ` +
+    `${percent(found.near)} are within 2`);
+  const { shown, soft } = await page.evaluate(at => window.kit.shownAt(window.subjects.cloud, at), seconds);
+  const after = await page.evaluate(at => window.kit.shownAt(window.subjects.cloud, at), sequence.segments[0].frames.at(-1) / framesPerSecond);
+  demand(soft && shown.length === 2 && shown[0][1] === shown[1][2] && !after.soft && after.shown.length === 1,
+    `two meshes share the pixels in it, ${JSON.stringify(shown)}, and after it the shader leaves out none`);
+  return { view, without };
+}
+
+async function file(page, name, { segments, framesPerSecond, period }) {
+  const { exponent, bias, extinction } = chunksOf(read(name)).json.asset.extras.cloudbake;
+  for (const plugin of [true, false]) {
+    const loaded = await load(page, 'cloud', name, { plugin });
+    demand(loaded.exponent === exponent && loaded.bias === bias && loaded.extinction === extinction && loaded.parts === segments.length
+      && loaded.duration === period / framesPerSecond, `${name}, ${plugin ? 'with' : 'without'} the plugin: it reads ${JSON.stringify(loaded)}`);
+  }
+  const { same, equal, differs } = await page.evaluate(all => window.kit.others(window.subjects.cloud, ...all), [0.06, 0.1]);
+  demand(same && equal && differs, `a copy of ${name} has its own time`);
+}
+
+async function refused(page) {
+  const told = async change => {
+    writeFileSync(join(folder, 'changed.glb'), changedGlb(read('picture.glb'), change));
+    return page.evaluate(() => window.kit.refusal('changed.glb'));
+  };
+  const own = json => json.asset.extras.cloudbake, changes = {
+    'has lost the picture': json => { json.images[0].name = ''; },
+    'not 1: take the package': json => { own(json).version = 2; },
+    'incomplete or damaged': json => { own(json).sequence.segments[1].frames.reverse(); },
+    'has another size': json => { own(json).sequence.segments[2].first_row += 1000; },
+    'is no sequence': json => { own(json).layout = 'lobe-uv'; },
+  };
+  for (const [words, change] of Object.entries(changes)) {
+    const message = await told(change);
+    demand(message.includes(words), `a changed file is refused: ${message}`);
+  }
+}
+
+async function speed(page) {
+  run('sequence', 'humilis', '--vary', 'size=0.5:0.8', '--frame-count', '4', '--vertices', '3000', '--voxels', '60', '--as', 'picture', '-o',
+    'fast.glb');
+  await load(page, 'cloud', 'fast.glb');
+  const { median, most, vertices } = await page.evaluate(all => window.kit.milliseconds(window.subjects.cloud, all),
+    Array.from({ length: 40 }, (_, i) => (i + 0.3) / 40 * 3 / 24));
+  demand(median > 0 && median < 50, `an update of ${vertices} vertices takes ${median.toFixed(2)} ms, the median of 40 times, at most ` +
+    `${most.toFixed(2)} ms`);
+}
+
+const WORDS = ['humilis', '--vary', 'size=0.5:0.8', '--frame-count', '8', '--vertices', '800', '--voxels', '60', '--change', '0.2',
+  '--fade', '2'];
+
+run('shader', 'npm', '-o', 'node_modules/cloudbake-materials');
+for (const form of Object.keys(FORMS)) run('sequence', ...WORDS, '--as', form, '-o', `${form}.glb`);
+for (const name of ['three', '@babylonjs']) symlinkSync(join(packages, name), join(folder, 'node_modules', name));
+const kit = await import(pathToFileURL(join(folder, 'node_modules/cloudbake-materials/sequence.js')));
+const of_form = {};
+for (const form of Object.keys(FORMS)) of_form[form] = await sequenceFrom(kit, `${form}.glb`);
+keys(kit, of_form.picture, of_form.morph);
+times(kit, of_form.morph);
+writeBox(of_form.morph, chunksOf(read('morph.glb')).json);
+const server = await serve();
+await testPage(folder, async page => {
+  await openEngine(page, `http://127.0.0.1:${server.address().port}`, 'three_sequence');
+  for (const form of Object.keys(FORMS)) {
+    await file(page, `${form}.glb`, of_form[form]);
+    await pictures(kit, page, `${form}.glb`, of_form[form], [1.5, 2.25, 3.6, 6.5]);
+    await fade(kit, page, `${form}.glb`, of_form[form], 4.5);
+    await fade(kit, page, `${form}.glb`, of_form[form], 5);
+  }
+  await refused(page);
+  await speed(page);
+});
