@@ -129,54 +129,75 @@ export function keysOfTargets(base, targets) {
 // --- Keys in a picture ---
 
 /**
- * The bytes of a PNG, exactly as they are stored: a browser's canvas may change them to protect the privacy of its user.
+ * The rows of a PNG with their filters.
  * @param {ArrayBuffer | Uint8Array} file
- * @returns {Promise<{ width: number, height: number, channels: number, bytes: Uint8Array }>}
+ * @returns {Promise<{ width: number, height: number, channels: number, rows: Uint8Array }>}
  */
-export async function pixelsOfPng(file) {
+export async function rowsOfPng(file) {
   const all = new Uint8Array(file), view = new DataView(all.buffer), parts = [];
-  const typeOf = at => String.fromCharCode(...all.subarray(at + 4, at + 8));
   let head = null;
   for (let at = 8; at + 12 <= all.length; at += 12 + view.getUint32(at)) {
-    const data = all.subarray(at + 8, at + 8 + view.getUint32(at));
-    if (typeOf(at) === 'IHDR') head = { width: view.getUint32(at + 8), height: view.getUint32(at + 12), kind: [...data.subarray(8, 13)] };
-    if (typeOf(at) === 'IDAT') parts.push(data);
+    const type = String.fromCharCode(...all.subarray(at + 4, at + 8)), data = all.subarray(at + 8, at + 8 + view.getUint32(at));
+    if (type === 'IHDR') head = { width: view.getUint32(at + 8), height: view.getUint32(at + 12), kind: data.subarray(8, 13) };
+    if (type === 'IDAT') parts.push(data);
   }
   const [depth, color, , , is_interlaced] = head?.kind ?? [], channels = color === 2 ? 3 : 4;
   if (!head || depth !== 8 || ![2, 6].includes(color) || is_interlaced)
     throw new Error(`the picture of the keys is no PNG with three bytes per texel: ${CURE}`);
   const rows = new Uint8Array(await new Response(new Blob(parts).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer());
-  const { width, height } = head, stride = width * channels;
-  if (rows.length < height * (stride + 1)) throw new Error(`the picture of the keys is damaged: ${CURE}`);
-  return { width, height, channels, bytes: unfiltered(rows, height, stride, channels) };
+  const { width, height } = head;
+  if (rows.length < height * (width * channels + 1)) throw new Error(`the picture of the keys is damaged: ${CURE}`);
+  return { width, height, channels, rows };
 }
 
-// What a byte is expected to be, from the one to the left, the one above, and the one above that to the left.
-const GUESSES = [() => 0, left => left, (left, above) => above, (left, above) => left + above >> 1, (left, above, corner) => {
+/**
+ * The bytes of a PNG, exactly as they are stored: a browser's canvas may change them to protect the privacy of its user.
+ * @param {ArrayBuffer | Uint8Array} file
+ * @returns {Promise<{ width: number, height: number, channels: number, bytes: Uint8Array }>}
+ */
+export async function pixelsOfPng(file) {
+  const { width, height, channels, rows } = await rowsOfPng(file);
+  return { width, height, channels, bytes: unfiltered(rows, height, width * channels, channels) };
+}
+
+// The one of the byte to the left, the one above, and the one above that to the left which is nearest to left + above - corner.
+function nearestOf(left, above, corner) {
   const a = Math.abs(above - corner), b = Math.abs(left - corner), c = Math.abs(left + above - 2 * corner);
   return a <= b && a <= c ? left : b <= c ? above : corner;
-}];
+}
 
-// Each row begins with the number of its filter, and has the differences of its bytes to what they are expected to be.
+// Each row begins with the number of its filter, and has the differences of its bytes to what the filter expects.
 function unfiltered(rows, height, stride, channels) {
   const bytes = new Uint8Array(height * stride);
+  let above = new Uint8Array(stride);
   for (let y = 0; y < height; ++y) {
-    const guess = GUESSES[rows[y * (stride + 1)]];
-    if (!guess) throw new Error(`the picture of the keys is damaged: ${CURE}`);
-    for (let x = 0, at = y * stride, from = y * (stride + 1) + 1; x < stride; ++x, ++at, ++from) {
-      const has_left = x >= channels, has_above = y > 0;
-      bytes[at] = rows[from] + guess(has_left ? bytes[at - channels] : 0, has_above ? bytes[at - stride] : 0,
-        has_left && has_above ? bytes[at - stride - channels] : 0);
-    }
+    const begin = y * (stride + 1) + 1, filter = rows[begin - 1], row = bytes.subarray(y * stride, (y + 1) * stride);
+    row.set(rows.subarray(begin, begin + stride));
+    if (filter > 4) throw new Error(`the picture of the keys is damaged: ${CURE}`);
+    if (filter === 1) for (let x = channels; x < stride; ++x) row[x] += row[x - channels];
+    if (filter === 2) for (let x = 0; x < stride; ++x) row[x] += above[x];
+    if (filter === 3) for (let x = 0; x < stride; ++x) row[x] += (x < channels ? 0 : row[x - channels]) + above[x] >> 1;
+    if (filter === 4)
+      for (let x = 0; x < stride; ++x)
+        row[x] += x < channels ? above[x] : nearestOf(row[x - channels], above[x], above[x - channels]);
+    above = row;
   }
   return bytes;
 }
 
-// The direction of a point of the octahedron's map, whose two bytes are given.
-function setDirection(out, first, second) {
-  const u = first / 127.5 - 1, v = second / 127.5 - 1, z = 1 - Math.abs(u) - Math.abs(v), fold = Math.max(-z, 0);
-  const x = u - (u < 0 ? -fold : fold), y = v - (v < 0 ? -fold : fold), size = Math.sqrt(x * x + y * y + z * z);
-  out[0] = x / size, out[1] = y / size, out[2] = z / size;
+// The directions of the octahedron's map, by the two bytes of a point: three numbers each.
+let octahedron = null;
+function octahedronOf() {
+  if (octahedron) return octahedron;
+  octahedron = new Float32Array(3 * 65536);
+  for (let i = 0; i < 65536; ++i) {
+    const u = (i >> 8) / 127.5 - 1, v = (i & 255) / 127.5 - 1, z = 1 - Math.abs(u) - Math.abs(v), fold = Math.max(-z, 0);
+    const x = u - (u < 0 ? -fold : fold), y = v - (v < 0 ? -fold : fold), size = Math.sqrt(x * x + y * y + z * z);
+    octahedron[3 * i] = x / size;
+    octahedron[3 * i + 1] = y / size;
+    octahedron[3 * i + 2] = z / size;
+  }
+  return octahedron;
 }
 
 /**
@@ -185,22 +206,24 @@ function setDirection(out, first, second) {
  * @param {Segment} segment @param {number} vertices @returns {Key[]}
  */
 export function keysOfPicture({ width, height, channels, bytes }, { box: [low, high], densityMax }, { frames, firstRow }, vertices) {
-  const columns = 1024, block = Math.ceil(vertices / columns) * frames.length, direction = [0, 0, 0];
+  const columns = 1024, block = Math.ceil(vertices / columns) * frames.length, directions = octahedronOf();
   if (width !== columns || !(firstRow >= 0) || firstRow + 4 * block > height)
     throw new Error(`the picture of the keys has another size: ${CURE}`);
   return frames.map((_, k) => {
-    const key = emptyKey(vertices);
+    const key = emptyKey(vertices), step = channels * block * columns;
     for (let v = 0; v < vertices; ++v) {
       const row = firstRow + Math.floor(v / columns) * frames.length + k;
-      const [a, b, c, d] = [0, 1, 2, 3].map(number => channels * ((row + number * block) * columns + v % columns));
-      for (let axis = 0; axis < 3; ++axis)
+      const a = channels * (row * columns + v % columns), b = a + step, c = b + step, d = c + step;
+      const lobe = 3 * (256 * bytes[c] + bytes[c + 1]), normal = 3 * (256 * bytes[d] + bytes[d + 1]);
+      for (let axis = 0; axis < 3; ++axis) {
         key.positions[3 * v + axis] = low[axis] + (high[axis] - low[axis]) * (256 * bytes[a + axis] + bytes[b + axis]) / STEPS;
-      setDirection(direction, bytes[d], bytes[d + 1]);
-      key.normals.set(direction, 3 * v);
-      setDirection(direction, bytes[c], bytes[c + 1]);
+        key.normals[3 * v + axis] = directions[normal + axis];
+      }
       const root = (256 * bytes[c + 2] + bytes[d + 2]) / STEPS;
-      key.first.set([direction[0], direction[1]], 2 * v);
-      key.second.set([direction[2], densityMax * root * root], 2 * v);
+      key.first[2 * v] = directions[lobe];
+      key.first[2 * v + 1] = directions[lobe + 1];
+      key.second[2 * v] = directions[lobe + 2];
+      key.second[2 * v + 1] = densityMax * root * root;
     }
     return key;
   });

@@ -1,9 +1,10 @@
 // Draws sequences in three.js, for sequence.mjs.
-import { Scene } from 'three';
+import { NoToneMapping, PerspectiveCamera, Scene, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudSky, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
 import { CloudSequence } from 'cloudbake-materials/three/sequence';
-import { draw as drawScene } from './three_page.mjs';
+import { PaintedClouds } from 'cloudbake-materials/three/painted';
+import { canvasOf, colorOf, draw as drawScene, rendererOf } from './three_page.mjs';
 
 export async function load(file, { plugin = true } = {}) {
   const loader = new GLTFLoader();
@@ -25,14 +26,41 @@ export function shownAt({ sequence, material }, seconds) {
   return { shown, soft: material.soft };
 }
 
+// Of the segments that are seen in a fade only the first or the second.
+const showOnly = ({ sequence }, only) => sequence.children.filter(({ visible }) => visible).forEach((mesh, i) => {
+  mesh.userData.cloudShown = i === only ? [0, 1] : [0, 0];
+});
+
 // The linear values of the mean over samples; without the sequence if it is hidden.
-export function draw(subject, { seconds, hidden = false, tamper, ...view }) {
+export function draw(subject, { seconds, hidden = false, tamper, only = null, ...view }) {
   subject.sequence.update(seconds);
   subject.sequence.visible = !hidden;
+  if (only !== null) showOnly(subject, only);
   if (tamper === 'first lobes')
-    for (const { geometry: { attributes } } of subject.sequence.children)
-      for (const name of ['uv', 'uv1']) attributes[name].array.set(attributes[name].first ??= attributes[name].array.slice());
-  return Array.from(drawScene(subject, view));
+    subject.sequence.children.forEach(({ geometry: { attributes: { uv, uv1 } } }, i) => {
+      const [{ first, second }] = subject.sequence.sequence.segments[i].keys;
+      uv.array.set(first);
+      uv1.array.set(second);
+    });
+  const values = Array.from(drawScene(subject, view));
+  subject.sequence.update(seconds);
+  return values;
+}
+
+// The 8 bits of the painted look; of one of the two segments of a fade if `only` is its number.
+export function paint({ sequence, scene, material }, { seconds, size, camera, sun, colors }, only) {
+  const eye = new PerspectiveCamera(camera.fov, size[0] / size[1], camera.distance / 100, camera.distance * 10), own = rendererOf(size);
+  eye.position.set(...camera.from);
+  eye.lookAt(...camera.at);
+  material.setValues({ sunDirection: new Vector3(...sun), sunColor: colorOf(colors.sun_color) });
+  sequence.update(seconds);
+  if (only !== null) showOnly({ sequence }, only);
+  own.toneMapping = NoToneMapping;
+  const painted = new PaintedClouds(scene, eye, { tone: 'cloudbake', samplesPerSide: 4, size: camera.distance / 3 });
+  painted.render(own);
+  painted.dispose();
+  sequence.update(seconds);
+  return Array.from(canvasOf(own));
 }
 
 // Another sequence of the same keys at another time does not change this one.
@@ -61,3 +89,19 @@ export function milliseconds({ sequence }, times) {
 
 // What it says about a file.
 export const refusal = file => load(file).then(() => 'nothing', ({ message }) => message);
+
+// Whether a PNG of the browser is read exactly, and the filters of its rows.
+export async function readsPng() {
+  const size = 64, canvas = new OffscreenCanvas(size, size), context = canvas.getContext('2d'), image = context.createImageData(size, size);
+  const shades = [(x, y) => x * y, (x, y) => 3 * x + y, x => x * x, (x, y) => y * y, (x, y) => x ^ y, () => 7, (x, y) => (x * 71 + y * 37) % 251];
+  for (let i = 0; i < size * size; ++i) {
+    const x = i % size, y = Math.floor(i / size), shade = shades[y % shades.length](x, y);
+    image.data.set([shade & 255, shade + x & 255, shade * 3 & 255, 255], 4 * i);
+  }
+  context.putImageData(image, 0, 0);
+  const file = new Uint8Array(await (await canvas.convertToBlob({ type: 'image/png' })).arrayBuffer());
+  const { pixelsOfPng, rowsOfPng } = await import('/node_modules/cloudbake-materials/sequence.js');
+  const { bytes, channels } = await pixelsOfPng(file), { rows } = await rowsOfPng(file);
+  const same = image.data.every((value, i) => i % 4 >= channels || value === bytes[Math.floor(i / 4) * channels + i % 4]);
+  return { same, filters: [...new Set(Array.from({ length: size }, (_, y) => rows[y * (size * channels + 1)]))].sort() };
+}

@@ -6,6 +6,7 @@ import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { CloudLevels, CloudMaterial, CloudShadow, CloudSky, CloudbakeLoaderPlugin, ImpostorMaterial, SkyMaterial, impostorSquare,
   sortImpostors } from 'cloudbake-materials/three';
 import { PaintedClouds } from 'cloudbake-materials/three/painted';
+import { CloudSequence } from 'cloudbake-materials/three/sequence';
 import { CloudShade } from 'cloudbake-materials/three/shade';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
@@ -83,6 +84,17 @@ export async function softly(scene: Scene, loader: GLTFLoader, material: CloudMa
   shadow.shadowStrength = 0.8;
   shadow.update();
   return shadow.darken(new MeshStandardMaterial());
+}
+
+export async function changing(scene: Scene, loader: GLTFLoader, seconds: number): Promise<CloudSequence> {
+  const smoke = await CloudSequence.of(await loader.loadAsync('smoke.glb')), other = smoke.clone();
+  smoke.update(seconds % smoke.duration);
+  smoke.material.extinction *= 2;
+  other.position.set(1, 0, 0);
+  other.update(0);
+  scene.add(smoke, other);
+  other.dispose();
+  return smoke;
 }
 
 export function shaded(scene: Scene, sun: Vector3, ground: MeshStandardMaterial): CloudShade {
