@@ -16,20 +16,22 @@ const rising = frames => Array.isArray(frames) && frames.length > 0
  *   of `first` and `second` two each, (o.x, o.y) and (o.z, d)
  */
 
+const segmentsAreRight = segments => Array.isArray(segments) && segments.length > 0
+  && segments.every(({ frames }, s) => rising(frames) && (s === 0 || frames[0] >= segments[s - 1].frames[0]));
+const pictureIsRight = ({ box, density_max }) => box?.length === 2 && box.flat().length === 6 && density_max >= 0;
+
 /** What the JSON of a glTF file says about a sequence; null of another file. @returns {Sequence | null} */
 export function sequenceOf(json) {
   const info = json.asset?.extras?.cloudbake;
   if (info?.layout !== 'lobe-sequence') return null;
   if (info.version !== 1)
     throw new Error(`the sequence has version ${info.version} of its layout, not 1: take the package of its cloudbake`);
-  const own = info.sequence ?? {}, is_picture = own.keys === 'picture', { segments } = own;
-  const firsts = Array.isArray(segments) ? segments.map(({ frames }) => frames?.[0]) : [];
-  const is_right = ['picture', 'morph targets'].includes(own.keys) && own.frames_per_second > 0 && own.period >= 0
-    && firsts.length > 0 && segments.every(({ frames }) => rising(frames)) && firsts.every((first, i) => i === 0 || first >= firsts[i - 1])
-    && (!is_picture || (own.box?.length === 2 && own.box.flat().length === 6 && own.density_max >= 0));
-  if (!is_right) throw new Error(`the sequence's metadata are incomplete or damaged: ${CURE}`);
+  const own = info.sequence ?? {}, is_known = own.keys === 'morph targets' || (own.keys === 'picture' && pictureIsRight(own));
+  if (!is_known || !(own.frames_per_second > 0) || !(own.period >= 0) || !segmentsAreRight(own.segments))
+    throw new Error(`the sequence's metadata are incomplete or damaged: ${CURE}`);
   return { form: own.keys, framesPerSecond: own.frames_per_second, loops: own.loops === true, period: own.period, box: own.box,
-    densityMax: own.density_max, segments: segments.map(({ mesh, frames, first_row }) => ({ mesh, frames, firstRow: first_row })) };
+    densityMax: own.density_max,
+    segments: own.segments.map(({ mesh, frames, first_row }) => ({ mesh, frames, firstRow: first_row })) };
 }
 
 /**
@@ -57,7 +59,7 @@ export const emptyKey = vertices => ({ positions: new Float32Array(3 * vertices)
 
 // --- Blending ---
 
-function setNormal(normals, i, x, y, z, [other_x, other_y, other_z]) {
+function setNormal(normals, i, x, y, z, /** @type {number[]} */ [other_x, other_y, other_z]) {
   const size = Math.sqrt(x * x + y * y + z * z), is_right = size > 0;
   normals[i] = is_right ? x / size : other_x;
   normals[i + 1] = is_right ? y / size : other_y;
@@ -119,7 +121,8 @@ export function keysOfTargets(base, targets) {
     if (target.positions.length !== 3 * vertices) throw new Error(`the keys of a segment have different numbers of vertices: ${CURE}`);
     const key = emptyKey(vertices), sum = (name, i) => Math.fround(base[name][i] + target[name][i]);
     for (let i = 0; i < 3 * vertices; ++i) key.positions[i] = sum('positions', i);
-    for (let i = 0; i < 3 * vertices; i += 3) setNormal(key.normals, i, sum('normals', i), sum('normals', i + 1), sum('normals', i + 2), UP);
+    for (let i = 0; i < 3 * vertices; i += 3)
+      setNormal(key.normals, i, sum('normals', i), sum('normals', i + 1), sum('normals', i + 2), UP);
     for (let i = 0; i < 2 * vertices; i += 2)
       setLobe(key, i, sum('first', i), sum('first', i + 1), sum('second', i), sum('second', i + 1));
     return key;

@@ -5,6 +5,7 @@ import { emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, seenAt, sequenceOf
 import { CloudMaterial } from './three.js';
 
 // The names of the numbers of a key in a mesh of three.js, in a file, and how many a vertex has.
+/** @type {[string, string, string, number][]} */
 const ATTRIBUTES = [['positions', 'position', 'POSITION', 3], ['normals', 'normal', 'NORMAL', 3], ['first', 'uv', 'TEXCOORD_0', 2],
   ['second', 'uv1', 'TEXCOORD_1', 2]];
 
@@ -16,7 +17,7 @@ function numbersOf(attribute, width) {
 
 // The numbers of the attributes of a primitive or of one of its morph targets.
 async function keyOf(parser, attributes) {
-  const key = {};
+  const key = emptyKey(0);
   for (const [name, , set, width] of ATTRIBUTES) {
     if (attributes[set] === undefined)
       throw new Error(`a key of the sequence has no ${set}: take the file that \`cloudbake sequence\` wrote`);
@@ -74,7 +75,7 @@ export class CloudSequence extends Group {
     if (!sequence) throw new Error('the file is no sequence: make one with `cloudbake sequence`');
     const picture = sequence.form === 'picture' ? await pictureOf(parser) : null;
     const segments = await Promise.all(sequence.segments.map(segment => segmentOf(parser, sequence, segment, picture)));
-    const settings = settingsOf(parser.json, { sequences: true });
+    const settings = /** @type {any} */ (settingsOf(parser.json, { sequences: true }));
     return new CloudSequence({ ...sequence, segments }, userData.cloudMaterial ?? new CloudMaterial(settings));
   }
 
@@ -114,7 +115,7 @@ export class CloudSequence extends Group {
   }
 
   // Another one of the same keys and the same material, which may be at another time.
-  clone() { return new CloudSequence(this.sequence, this.material).copy(this, false); }
+  clone() { return /** @type {this} */ (new CloudSequence(this.sequence, this.material).copy(this, false)); }
 
   dispose() {
     setFading(this.material, this, false);

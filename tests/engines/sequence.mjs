@@ -76,8 +76,8 @@ function writeBox({ segments }, json) {
     meshes: [{ primitives: [{ attributes: { POSITION: 0, NORMAL: 1, TEXCOORD_0: 2, TEXCOORD_1: 3 }, indices: 4, material: 0 }] }] } }));
 }
 
-// The sequence without the triangles that face away from the eye at a time: every ray only enters the cloud, so that preview draws the first
-// surface opaque.
+// The sequence without the triangles that face away from the eye at a time: every ray only enters the cloud, so that preview draws the
+// first surface opaque.
 function writeOpaque(kit, name, sequence, seconds, eye, to) {
   const asset = chunksOf(read(name)), { json, binary } = asset, more = [];
   let end = binary.length;
@@ -100,7 +100,7 @@ function writeOpaque(kit, name, sequence, seconds, eye, to) {
 const largestOf = (a, b) => a.reduce((most, x, i) => Math.max(most, Math.abs(x - b[i])), 0);
 
 // The keys of the two forms, and of the assets of `--as keys`, are the same within the steps of the picture; and times lead to segments.
-function keys(kit, of_picture, of_morph) {
+function sameKeys(kit, of_picture, of_morph) {
   const pairs = of_picture.segments.flatMap((segment, s) => segment.keys.map((key, k) => [key, of_morph.segments[s].keys[k]]));
   const [low, high] = of_picture.box, step = Math.max(...low.map((x, i) => high[i] - x)) / 65535;
   const off = name => Math.max(...pairs.map(([a, b]) => largestOf(a[name], b[name])));
@@ -119,7 +119,8 @@ function keys(kit, of_picture, of_morph) {
 
 // An engine without CloudSequence refuses the file.
 async function elsewhere() {
-  const { settingsOf } = await import(pathToFileURL(join(folder, 'node_modules/cloudbake-materials/asset.js'))), { json } = chunksOf(read('morph.glb'));
+  const { settingsOf } = await import(pathToFileURL(join(folder, 'node_modules/cloudbake-materials/asset.js')));
+  const { json } = chunksOf(read('morph.glb'));
   let told = 'nothing';
   try {
     settingsOf(json);
@@ -134,10 +135,11 @@ function times(kit, { segments, framesPerSecond, ...rest }) {
   const [{ frames: [, ...one] }, { frames: [begin] }] = segments, end = one.at(-1), middle = at((begin + end) / 2), late = at(1e6);
   demand(begin < end && middle.length === 2 && middle.every(({ weight }) => Math.abs(weight - 0.5) < 1e-9)
     && middle[0].segment === 0 && at(end).length === 1 && at(end)[0].segment === 1 && late.length === 1
-    && late[0].frame === segments.at(-1).frames.at(-1), `in the middle of a fade two segments have the weight 0.5: ${JSON.stringify(middle)}`);
+    && late[0].frame === segments.at(-1).frames.at(-1),
+    `in the middle of a fade two segments have the weight 0.5: ${JSON.stringify(middle)}`);
   const loop = { framesPerSecond: 1, loops: true, period: 10, segments: [{ frames: [0, 6] }, { frames: [4, 12] }] };
-  demand(JSON.stringify(kit.seenAt(loop, 21)) === JSON.stringify([{ segment: 1, frame: 11, weight: 0.5 }, { segment: 0, frame: 1, weight: 0.5 }]),
-    'in a loop the last segment fades into the first frames');
+  const seen = [{ segment: 1, frame: 11, weight: 0.5 }, { segment: 0, frame: 1, weight: 0.5 }];
+  demand(JSON.stringify(kit.seenAt(loop, 21)) === JSON.stringify(seen), 'in a loop the last segment fades into the first frames');
 }
 
 // --- Pictures ---
@@ -174,8 +176,8 @@ async function pictures(kit, page, name, sequence, frames) {
     const { view, truth, linear, without, inside } = await subjectOf(kit, page, name, sequence, frame / framesPerSecond);
     const all = compare(bits(linear), truth, () => true), own = compare(bits(linear), truth, inside);
     demand(kit.seenAt(sequence, view.seconds).length === 1 && all.near >= NEAR && own.near >= NEAR && own.all > 10000,
-      `${name} at frame ${frame}: ${percent(all.near)} of values are within 2 of preview's, ${percent(own.near)} of the ${own.all} of the ` +
-      `cloud, off by ${own.largest.toFixed(1)} at most`);
+      `${name} at frame ${frame}: ${percent(all.near)} of values are within 2 of preview's, ${percent(own.near)} of the ${own.all} of ` +
+      `the cloud, off by ${own.largest.toFixed(1)} at most`);
     if (frame !== frames[0]) continue;
     const mistakes = { 'a third of a frame later': { seconds: (frame + 1 / 3) / framesPerSecond },
       'the lobes of the first key': { tamper: 'first lobes' } };
@@ -193,11 +195,13 @@ async function fade(kit, page, name, sequence, frame) {
   const { view, truth, linear, inside } = await subjectOf(kit, page, name, sequence, seconds);
   const found = compare(bits(linear), truth, inside), of_truth = truth.filter((_, i) => inside(i));
   const mean = values => values.reduce((sum, x) => sum + x, 0) / values.length;
-  demand(seen.length === 2 && Math.abs(found.mean) < FADE_MEAN && found.near >= NEAR_IN_FADE, `${name} in a fade, at frame ${frame}, weight ${seen[1].weight.toFixed(2)}: ` +
+  demand(seen.length === 2 && Math.abs(found.mean) < FADE_MEAN && found.near >= NEAR_IN_FADE,
+    `${name} in a fade, at frame ${frame}, weight ${seen[1].weight.toFixed(2)}: ` +
     `the mean of the ${found.all} values of the cloud is off by ${found.mean.toFixed(3)}, preview's is ${mean(of_truth).toFixed(1)}; ` +
     `${percent(found.near)} are within 2`);
   const { shown, soft } = await page.evaluate(at => window.kit.shownAt(window.subjects.cloud, at), seconds);
-  const after = await page.evaluate(at => window.kit.shownAt(window.subjects.cloud, at), sequence.segments[0].frames.at(-1) / framesPerSecond);
+  const after = await page.evaluate(at => window.kit.shownAt(window.subjects.cloud, at), sequence.segments[0].frames.at(-1) /
+    framesPerSecond);
   demand(soft && shown.length === 2 && shown[0][1] === shown[1][2] && !after.soft && after.shown.length === 1,
     `two meshes share the pixels in it, ${JSON.stringify(shown)}, and after it the shader leaves out none`);
   for (const only of [0, 1]) {
@@ -222,7 +226,8 @@ async function file(page, name, { segments, framesPerSecond, period }) {
   for (const plugin of [true, false]) {
     const loaded = await load(page, 'cloud', name, { plugin });
     demand(loaded.exponent === exponent && loaded.bias === bias && loaded.extinction === extinction && loaded.parts === segments.length
-      && loaded.duration === period / framesPerSecond, `${name}, ${plugin ? 'with' : 'without'} the plugin: it reads ${JSON.stringify(loaded)}`);
+      && loaded.duration === period / framesPerSecond,
+    `${name}, ${plugin ? 'with' : 'without'} the plugin: it reads ${JSON.stringify(loaded)}`);
   }
   const { same, equal, differs } = await page.evaluate(all => window.kit.others(window.subjects.cloud, ...all), [0.06, 0.1]);
   demand(same && equal && differs, `a copy of ${name} has its own time`);
@@ -253,8 +258,8 @@ async function refused(page) {
 }
 
 async function speed(page) {
-  run('sequence', 'humilis', '--vary', 'size=0.5:0.8', '--frame-count', '4', '--vertices', '3000', '--voxels', '60', '--as', 'picture', '-o',
-    'fast.glb');
+  run('sequence', 'humilis', '--vary', 'size=0.5:0.8', '--frame-count', '4', '--vertices', '3000', '--voxels', '60', '--as', 'picture',
+    '-o', 'fast.glb');
   await load(page, 'cloud', 'fast.glb');
   const { median, most, vertices } = await page.evaluate(all => window.kit.milliseconds(window.subjects.cloud, all),
     Array.from({ length: 40 }, (_, i) => (i + 0.3) / 40 * 3 / 24));
@@ -271,7 +276,7 @@ for (const name of ['three', '@babylonjs']) symlinkSync(join(packages, name), jo
 const kit = await import(pathToFileURL(join(folder, 'node_modules/cloudbake-materials/sequence.js')));
 const of_form = {};
 for (const form of FORMS) of_form[form] = await sequenceFrom(kit, `${form}.glb`);
-keys(kit, of_form.picture, of_form.morph);
+sameKeys(kit, of_form.picture, of_form.morph);
 times(kit, of_form.morph);
 await elsewhere();
 writeBox(of_form.morph, chunksOf(read('morph.glb')).json);

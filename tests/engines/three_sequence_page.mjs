@@ -93,7 +93,8 @@ export const refusal = file => load(file).then(() => 'nothing', ({ message }) =>
 // Whether a PNG of the browser is read exactly, and the filters of its rows.
 export async function readsPng() {
   const size = 64, canvas = new OffscreenCanvas(size, size), context = canvas.getContext('2d'), image = context.createImageData(size, size);
-  const shades = [(x, y) => x * y, (x, y) => 3 * x + y, x => x * x, (x, y) => y * y, (x, y) => x ^ y, () => 7, (x, y) => (x * 71 + y * 37) % 251];
+  const shades = [(x, y) => x * y, (x, y) => 3 * x + y, x => x * x, (x, y) => y * y, (x, y) => x ^ y, () => 7,
+    (x, y) => (x * 71 + y * 37) % 251];
   for (let i = 0; i < size * size; ++i) {
     const x = i % size, y = Math.floor(i / size), shade = shades[y % shades.length](x, y);
     image.data.set([shade & 255, shade + x & 255, shade * 3 & 255, 255], 4 * i);
