@@ -132,11 +132,11 @@ export function keysOfTargets(base, targets) {
 // --- Keys in a picture ---
 
 /**
- * The rows of a PNG with their filters.
+ * The bytes of a PNG, exactly as they are stored: a browser's canvas may change them to protect the privacy of its user.
  * @param {ArrayBuffer | Uint8Array} file
- * @returns {Promise<{ width: number, height: number, channels: number, rows: Uint8Array }>}
+ * @returns {Promise<{ width: number, height: number, channels: number, bytes: Uint8Array }>}
  */
-export async function rowsOfPng(file) {
+export async function pixelsOfPng(file) {
   const all = new Uint8Array(file), view = new DataView(all.buffer), parts = [];
   let head = null;
   for (let at = 8; at + 12 <= all.length; at += 12 + view.getUint32(at)) {
@@ -148,19 +148,9 @@ export async function rowsOfPng(file) {
   if (!head || depth !== 8 || ![2, 6].includes(color) || is_interlaced)
     throw new Error(`the picture of the keys is no PNG with three bytes per texel: ${CURE}`);
   const rows = new Uint8Array(await new Response(new Blob(parts).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer());
-  const { width, height } = head;
-  if (rows.length < height * (width * channels + 1)) throw new Error(`the picture of the keys is damaged: ${CURE}`);
-  return { width, height, channels, rows };
-}
-
-/**
- * The bytes of a PNG, exactly as they are stored: a browser's canvas may change them to protect the privacy of its user.
- * @param {ArrayBuffer | Uint8Array} file
- * @returns {Promise<{ width: number, height: number, channels: number, bytes: Uint8Array }>}
- */
-export async function pixelsOfPng(file) {
-  const { width, height, channels, rows } = await rowsOfPng(file);
-  return { width, height, channels, bytes: unfiltered(rows, height, width * channels, channels) };
+  const { width, height } = head, stride = width * channels;
+  if (rows.length < height * (stride + 1)) throw new Error(`the picture of the keys is damaged: ${CURE}`);
+  return { width, height, channels, bytes: unfiltered(rows, height, stride, channels) };
 }
 
 // The one of the byte to the left, the one above, and the one above that to the left which is nearest to left + above - corner.

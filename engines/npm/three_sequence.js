@@ -83,8 +83,10 @@ export class CloudSequence extends Group {
     super();
     this.sequence = sequence;
     this.material = material;
-    this.parts = sequence.segments.map(({ keys: [{ positions }], index, box, sphere }) => {
+    this.parts = sequence.segments.map(segment => {
+      const { keys: [{ positions }], frames: [first], index, box, sphere } = segment;
       const key = emptyKey(positions.length / 3), geometry = new BufferGeometry().setIndex(index);
+      writeKeyAt(segment, first, key);
       for (const [name, attribute, , width] of ATTRIBUTES)
         geometry.setAttribute(attribute, new BufferAttribute(key[name], width).setUsage(DynamicDrawUsage));
       Object.assign(geometry, { boundingBox: box.clone(), boundingSphere: sphere.clone() });

@@ -3,7 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
 import { buildSync } from 'esbuild';
@@ -105,7 +105,7 @@ export const SIZE = [360, 240], bare = `ui=0&size=${SIZE.join('x')}`;
 
 // The arguments of a test of the page, a new folder, the program run there, and how a page is opened from there.
 export function testFolder() {
-  const [binary, source] = process.argv.slice(2), folder = mkdtempSync(join(tmpdir(), 'view-'));
+  const [binary, source] = process.argv.slice(2, 4).map(path => resolve(path)), folder = mkdtempSync(join(tmpdir(), 'view-'));
   const run = (...words) => execFileSync(binary, [...words, '-q'], { cwd: folder, stdio: ['ignore', 'ignore', 'ignore'] });
   return { binary, source, folder, run, open: (page, file, hash) => openPage(page, join(folder, file), hash) };
 }

@@ -89,20 +89,3 @@ export function milliseconds({ sequence }, times) {
 
 // What it says about a file.
 export const refusal = file => load(file).then(() => 'nothing', ({ message }) => message);
-
-// Whether a PNG of the browser is read exactly, and the filters of its rows.
-export async function readsPng() {
-  const size = 64, canvas = new OffscreenCanvas(size, size), context = canvas.getContext('2d'), image = context.createImageData(size, size);
-  const shades = [(x, y) => x * y, (x, y) => 3 * x + y, x => x * x, (x, y) => y * y, (x, y) => x ^ y, () => 7,
-    (x, y) => (x * 71 + y * 37) % 251];
-  for (let i = 0; i < size * size; ++i) {
-    const x = i % size, y = Math.floor(i / size), shade = shades[y % shades.length](x, y);
-    image.data.set([shade & 255, shade + x & 255, shade * 3 & 255, 255], 4 * i);
-  }
-  context.putImageData(image, 0, 0);
-  const file = new Uint8Array(await (await canvas.convertToBlob({ type: 'image/png' })).arrayBuffer());
-  const { pixelsOfPng, rowsOfPng } = await import('/node_modules/cloudbake-materials/sequence.js');
-  const { bytes, channels } = await pixelsOfPng(file), { rows } = await rowsOfPng(file);
-  const same = image.data.every((value, i) => i % 4 >= channels || value === bytes[Math.floor(i / 4) * channels + i % 4]);
-  return { same, filters: [...new Set(Array.from({ length: size }, (_, y) => rows[y * (size * channels + 1)]))].sort() };
-}
