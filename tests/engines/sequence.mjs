@@ -247,12 +247,13 @@ async function pngs(page, kit) {
     random = random * 48271 % 2147483647;
     rows[i] = i % stride === 0 ? Math.floor(i / stride) % 5 : random;
   }
-  const file = Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), chunk('IHDR', head), chunk('IDAT', deflateSync(rows)),
+  const png = Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), chunk('IHDR', head), chunk('IDAT', deflateSync(rows)),
     chunk('IEND', Buffer.alloc(0))]);
-  writeFileSync(join(folder, 'filters.png'), file);
-  const { bytes } = await kit.pixelsOfPng(file), truth = Object.values(await pngValues(page, join(folder, 'filters.png')));
+  writeFileSync(join(folder, 'filters.png'), png);
+  const { bytes } = await kit.pixelsOfPng(png), truth = Object.values(await pngValues(page, join(folder, 'filters.png')));
   const wrong = truth.filter((value, i) => value !== bytes[i]).length;
-  demand(truth.length === 3 * width * height && wrong === 0, `a PNG with all filters: ${wrong} of ${truth.length} bytes are not Chromium's`);
+  demand(truth.length === 3 * width * height && wrong === 0,
+    `a PNG with all filters: ${wrong} of ${truth.length} bytes are not Chromium's`);
 }
 
 // The check sum of the chunks of a PNG.
