@@ -9,15 +9,14 @@ import { canvasOf, colorOf, draw as drawScene, rendererOf } from './three_page.m
 export async function load(file, { plugin = true } = {}) {
   const loader = new GLTFLoader();
   if (plugin) loader.register(parser => new CloudbakeLoaderPlugin(parser));
-  const begin = performance.now(), gltf = await loader.loadAsync(file), sequence = await CloudSequence.of(gltf);
-  const took = performance.now() - begin, scene = new Scene(), sky = new CloudSky(), { material } = sequence;
+  const sequence = await CloudSequence.of(await loader.loadAsync(file)), scene = new Scene(), sky = new CloudSky(), { material } = sequence;
   scene.add(sequence, sky);
-  return { scene, sky, sequence, material, took, settings: { exponent: material.exponent, bias: material.bias,
+  return { scene, sky, sequence, material, settings: { exponent: material.exponent, bias: material.bias,
     extinction: material.extinction } };
 }
 
-export const describe = ({ sequence, settings, took }) =>
-  ({ ...settings, took, parts: sequence.children.length, duration: sequence.duration });
+export const describe = ({ sequence, settings }) =>
+  ({ ...settings, parts: sequence.children.length, duration: sequence.duration });
 
 // What is shown at a time: the numbers of the meshes with their thresholds, and whether the shader leaves out pixels.
 export function shownAt({ sequence, material }, seconds) {
@@ -74,17 +73,6 @@ export function others({ sequence }, seconds, other_seconds) {
   const own = numbers(sequence), theirs = numbers(other);
   other.dispose();
   return { same, equal: own.length === theirs.length && own.every((x, i) => x === theirs[i]), differs: String(own) !== String(before) };
-}
-
-// The milliseconds of an update: the median of many, at times between two keys.
-export function milliseconds({ sequence }, times) {
-  const took = times.map(seconds => {
-    const begin = performance.now();
-    for (let i = 0; i < 20; ++i) sequence.update(seconds + i * 1e-4);
-    return (performance.now() - begin) / 20;
-  }).sort((a, b) => a - b);
-  return { median: took[took.length >> 1], most: took.at(-1),
-    vertices: Math.max(...sequence.children.map(({ geometry }) => geometry.attributes.position.count)) };
 }
 
 // What it says about a file.
