@@ -7,6 +7,7 @@
 #include "pipeline/options/resolve.h"
 #include "pipeline/picture/shadow_picture.h"
 #include "pipeline/scene/scene_file.h"
+#include "pipeline/sequence/sequence.h"
 #include "pipeline/sources/grown.h"
 
 namespace cloudbake {
@@ -33,6 +34,14 @@ Settings settingsOf(const CommandLine& line, std::span<const Given> given, const
   return settings;
 }
 
+RunFile outputOf(const CommandLine& line) {
+  Settings scratch;
+  for (const Given& given : line.given)
+    if (given.option->value.set) given.option->value.set(scratch, *given.option, given.value);
+  if (line.command != kSequence || scratch.sequence.output != SequenceOutput::kKeys) return {line.output, "-o"};
+  return {std::filesystem::path(line.output).replace_extension(), "-o", kKeyFileEnding, true};
+}
+
 RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   RunFiles files;
   if (!line.input.empty() && sourceKindOf(line.input) != SourceKind::kPreset) files.inputs.push_back({line.input, "the input"});
@@ -41,7 +50,7 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   for (const Given& given : line.given) addFilesOf(given, files);
   if (!line.output.empty() && std::string_view(command.output) == "FILE") {
     refuseOtherFormat({line.output, "-o"}, command.output_extensions);
-    files.outputs.push_back({line.output, "-o"});
+    files.outputs.push_back(outputOf(line));
   }
   for (const Given& given : line.given) {
     if (given.option->files.kind != FileUse::kLevels || line.command == kBatch) continue;

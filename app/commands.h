@@ -40,6 +40,8 @@ SourceSettings sourceOf(const CommandLine& line);
 Settings settingsOf(const CommandLine& line, std::span<const Given> given, const std::optional<SceneNeeds>& scene = std::nullopt);
 /// The files that a run reads and writes. Throws UsageError for an output whose name promises another format.
 RunFiles filesOf(const CommandSpec& command, const CommandLine& line);
+/// The file of -o, or the pattern of the files whose names are made of it.
+RunFile outputOf(const CommandLine& line);
 /// The needs of a bake from the file of --scene, if it is given.
 std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings);
 

@@ -1,7 +1,11 @@
 // cloudbake sequence FRAMES -o cloud.glb: a cloud that changes, from the frames of a simulation or a growing cloud.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "app/allocation.h"
 #include "app/commands.h"
@@ -38,6 +42,15 @@ std::vector<WrittenFile> keyFiles(const CloudSequence& sequence, const Settings&
   return files;
 }
 
+// The frames of a pattern or a folder are only known once it has been searched.
+void refuseToReplaceFrames(const std::vector<FrameInput>& frames, const CommandLine& line) {
+  RunFiles files;
+  for (const FrameInput& frame : frames) files.inputs.push_back({frame.file, "a frame"});
+  files.outputs.push_back(outputOf(line));
+  addNamedFiles(files);
+  refuseSharedFiles(files);
+}
+
 }  // namespace
 
 ExitCode runSequence(const CommandLine& line) {
@@ -46,22 +59,20 @@ ExitCode runSequence(const CommandLine& line) {
   report.command = "sequence";
   report.input = line.input.string();
   Stopwatch watch = watchOnTerminal(line.quiet);
-  const bool grows = isGrown(sourceKindOf(line.input));
   CommandLine first = line;
+  std::vector<Given> given = line.given;
   std::vector<FrameInput> frames;
-  if (!grows) {
+  std::optional<GrownSource> source;
+  if (isGrown(sourceKindOf(line.input))) {
+    source = readGrownSource(sourceOf(line));
+    given = withRecipe(*source, line.given);
+  } else {
     frames = frameFiles(line.input);
+    refuseToReplaceFrames(frames, line);
     first.input = frames.front().file;
   }
-  std::vector<Given> given = line.given;
-  if (grows) {  // the options of the command line override those of the recipe
-    const std::vector<Given> of_recipe = readGrownSource(sourceOf(line)).given;
-    given.insert(given.begin(), of_recipe.begin(), of_recipe.end());
-  }
   const Settings settings = settingsOf(first, given);
-  if (grows && settings.sequence.varied.empty())
-    throw UsageError("a preset or recipe needs --vary OPTION=A:B: what changes over the frames, such as size=0.5:1");
-  if (grows) frames = grownFrames(settings.sequence, line.input);
+  if (source) frames = grownFrames(settings.sequence, *source);
   const BakedSequence baked = bakeSequence(frames, settings, given, report, watch);
   std::vector<WrittenFile> files;
   switch (settings.sequence.output) {

@@ -2,10 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "core/lobe_lighting.h"
+#include "core/lobe_packing.h"
 
 namespace cloudbake {
+
+Box boxOf(std::span<const SequenceSegment> segments) {
+  Box box;
+  for (const SequenceSegment& segment : segments)
+    for (const SequenceKey& key : segment.keys)
+      for (const Vec3& p : key.positions) box.add(p);
+  return box;
+}
 
 SequenceKey blendedKey(const SequenceKey& from, const SequenceKey& to, double frame) {
   const double length = to.frame - from.frame;
@@ -52,14 +61,17 @@ std::vector<SeenSegment> seenAt(const CloudSequence& sequence, double seconds) {
   return {*before, {now, frame, weight}};
 }
 
-BakedMesh meshAt(const CloudSequence& sequence, const SeenSegment& seen) {
-  const SequenceSegment& segment = sequence.segments[seen.segment];
-  SequenceKey key = keyAt(segment, seen.frame);
+BakedMesh meshOf(const CloudSequence& sequence, const SequenceSegment& segment, SequenceKey key) {
   BakedMesh mesh;
   mesh.surface = {std::move(key.positions), std::move(key.normals), segment.triangles};
   mesh.lobes = std::move(key.lobes);
   mesh.info = sequence.info;
   return mesh;
+}
+
+BakedMesh meshAt(const CloudSequence& sequence, const SeenSegment& seen) {
+  const SequenceSegment& segment = sequence.segments[seen.segment];
+  return meshOf(sequence, segment, keyAt(segment, seen.frame));
 }
 
 }  // namespace cloudbake

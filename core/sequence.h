@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/types.h"
@@ -34,7 +35,11 @@ struct CloudSequence {
   bool loops = false;
   double period = 0;  ///< frames: of a loop, those after which it is at its beginning again; else the last frame
   std::vector<SequenceSegment> segments;
+  std::string seal;  ///< of a file: what sealOf was when it was written; empty: the file has none
 };
+
+/// Of the positions of all keys.
+Box boxOf(std::span<const SequenceSegment> segments);
 
 /// The key between two of the same triangles: every number is blended, as a vertex shader does it, then normals and o are made unit again.
 SequenceKey blendedKey(const SequenceKey& from, const SequenceKey& to, double frame);
@@ -50,6 +55,8 @@ struct SeenSegment {
 /// One segment, or two while one fades into the other, the earlier one first. A sequence that does not loop stays at its last frame.
 std::vector<SeenSegment> seenAt(const CloudSequence& sequence, double seconds);
 
+/// A key of a segment as a mesh.
+BakedMesh meshOf(const CloudSequence& sequence, const SequenceSegment& segment, SequenceKey key);
 /// The mesh of a segment at a frame.
 BakedMesh meshAt(const CloudSequence& sequence, const SeenSegment& seen);
 

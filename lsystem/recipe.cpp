@@ -333,6 +333,9 @@ CloudRecipe parseRecipe(const std::string& text, const std::string& name) {
   readFreeTable(table, "bake", [&](const toml::key& key, const toml::node& value) {
     recipe.bake_options.push_back({std::string(key.str()), optionText(value, name), int(key.source().begin.line)});
   });
+  readFreeTable(table, "sequence", [&](const toml::key& key, const toml::node& value) {
+    recipe.sequence_options.push_back({std::string(key.str()), optionText(value, name), int(key.source().begin.line)});
+  });
   for (const TomlReader* each : {&table, &turtle, &spheres, &limits}) each->finish();
   if (recipe.grammar.premise.text.empty()) throw InputError(name, "no premise: add a line such as premise = 'FFFA'");
   return recipe;

@@ -14,7 +14,7 @@
 
 namespace cloudbake {
 
-/// A key of the table [bake], which the command line's reader interprets. `value` is written as on the command line.
+/// A key of the tables [bake] and [sequence], which the command line's reader interprets. `value` is written as on the command line.
 struct RecipeOption {
   std::string key, value;
   int line = 0;
@@ -27,6 +27,7 @@ struct CloudRecipe {
   TurtleSettings turtle;
   SphereSettings spheres;
   std::vector<RecipeOption> bake_options;  ///< in the order of the file
+  std::vector<RecipeOption> sequence_options;
 };
 
 struct RecipeReading;
@@ -47,7 +48,7 @@ std::span<const RecipeKey> recipeKeys();
 /// Reads a recipe in TOML: recipeKeys(), and
 ///   top level     rules (array of '…' or one '''…'''), inner_shape = [[x, y, z, radius], …]
 ///   [variables]   any name = number
-///   [bake]        not interpreted
+///   [bake], [sequence]   not interpreted
 /// `name` is the file name in errors. Throws InputError with file, line and column for more than 2 MiB, a syntax error, an unknown key
 /// (with the nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
 CloudRecipe parseRecipe(const std::string& text, const std::string& name);

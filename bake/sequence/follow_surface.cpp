@@ -38,12 +38,6 @@ std::vector<Vec3> placesOf(const std::vector<SurfacePoint>& points, std::span<co
   return places;
 }
 
-double rmsBetween(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double squares = 0;
-  for (size_t v = 0; v < a.size(); ++v) squares += double(dot(a[v] - b[v], a[v] - b[v]));
-  return std::sqrt(squares / double(std::max<size_t>(1, a.size())));
-}
-
 // The triangles that face against the surface at the place nearest to their middle.
 std::vector<size_t> foldedTriangles(const SurfaceMesh& mesh, const SurfaceMesh& surface, const NearestSurface& nearest) {
   std::vector<Vec3> middles;
@@ -66,6 +60,12 @@ double missedShare(const SurfaceMesh& surface, const SurfaceMesh& mesh) {
 }
 
 }  // namespace
+
+double rmsBetween(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double squares = 0;
+  for (size_t v = 0; v < a.size(); ++v) squares += double(dot(a[v] - b[v], a[v] - b[v]));
+  return std::sqrt(squares / double(std::max<size_t>(1, a.size())));
+}
 
 FollowingMesh::FollowingMesh(SurfaceMesh start) : mesh_(std::move(start)), first_(mesh_.positions.size() + 1) {
   forEachEdge(mesh_.positions.size(), mesh_.triangles, Degenerate::kLeftOut,

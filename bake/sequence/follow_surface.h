@@ -48,6 +48,9 @@ class FollowingMesh {
   std::vector<uint32_t> first_, neighbours_;  ///< of each vertex: neighbours_[first_[v]] … neighbours_[first_[v + 1] − 1]
 };
 
+/// The rms of the distances between points, in their unit; 0 for none.
+double rmsBetween(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+
 /// The outer shells of a closed surface: without cavities, which nobody sees from outside, and without crumbs, shells of less than a
 /// thousandth of its volume. Vertices that are no longer used are left out.
 SurfaceMesh outerShells(const SurfaceMesh& surface);

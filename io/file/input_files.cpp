@@ -26,7 +26,7 @@ std::string InputFiles::read(const fs::path& file) {
     } catch (const IoError&) {
       throw changedWhileRead(file);
     }
-  if (!is_sealed_) return *seen.bytes;
+  if (!is_sealed_ && keeps_bytes_) return *seen.bytes;
   std::string bytes = std::move(*seen.bytes);
   seen.bytes.reset();
   return bytes;

@@ -22,7 +22,8 @@ Error changedWhileRead(const std::filesystem::path& file);
 /// Several threads may call it.
 class InputFiles {
  public:
-  explicit InputFiles(FileReader reader) : reader_(std::move(reader)) {}
+  /// `keeps_bytes`: if not, only hashes are kept before seal(), for inputs of many files. Each is then read twice.
+  explicit InputFiles(FileReader reader, bool keeps_bytes = true) : reader_(std::move(reader)), keeps_bytes_(keeps_bytes) {}
 
   /// The bytes of a file. Before seal(), they are read at the first call and kept. Afterwards they are given away; a file that is asked for
   /// once more is read again, and must have the same bytes. A file that could not be read stays so. Throws what the reader threw, and
@@ -42,7 +43,7 @@ class InputFiles {
   FileReader reader_;
   mutable std::mutex mutex_;
   std::map<std::filesystem::path, Seen> seen_;
-  bool is_sealed_ = false;
+  bool keeps_bytes_, is_sealed_ = false;
 };
 
 }  // namespace cloudbake

@@ -278,23 +278,18 @@ void refuseInfinite(const Json& value, const std::string& name) {
 
 }  // namespace
 
-namespace {
-
 bool isOfLayout(const Json& document, const char* layout) {
   const Json* record = findRecord(document);
   return record && record->is_object() && record->contains("layout") && (*record)["layout"] == layout;
 }
 
-}  // namespace
-
-bool isImpostorDocument(const Json& document) { return isOfLayout(document, kImpostorLayout); }
 bool isSequenceDocument(const Json& document) { return isOfLayout(document, kSequenceLayout); }
 
 AssetInfo requireInfo(const std::filesystem::path& file, const Json& document) {
   if (isImpostorDocument(document))
     throw InputError(file.string(), "is an impostor, which is pictures and no mesh: give the baked asset that it was made of");
   if (isSequenceDocument(document))
-    throw InputError(file.string(), "is a sequence, which only preview shows: give one of its keys (cloudbake sequence --as keys)");
+    throw InputError(file.string(), "is a sequence, which preview, view and check take: give one of its keys (cloudbake sequence --as keys)");
   try {
     const Json& record = recordOf(document);
     AssetInfo info = parseInfo(record);

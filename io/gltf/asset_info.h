@@ -11,7 +11,9 @@ namespace cloudbake {
 
 /// The layout of lobe impostors (io/gltf/impostor/impostor_file.h), which are no baked assets.
 inline constexpr const char* kImpostorLayout = "lobe-impostor";
-bool isImpostorDocument(const Json& document);
+/// Whether the metadata of a document say that it is of a layout.
+bool isOfLayout(const Json& document, const char* layout);
+inline bool isImpostorDocument(const Json& document) { return isOfLayout(document, kImpostorLayout); }
 /// Likewise of kSequenceLayout (io/gltf/sequence/sequence_file.h), whose meshes are baked assets only together.
 bool isSequenceDocument(const Json& document);
 

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cstring>
+#include <exception>
 
 #include "core/error.h"
 #include "core/text/json.h"
@@ -101,6 +102,33 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
   glb.append(padding(binary), '\0');
   return glb;
 }
+
+bool isGltfOfLayout(std::string_view bytes, const char* layout) {
+  try {
+    const std::string_view text = splitGlb("", bytes).json;
+    if (text.find(layout) == text.npos) return false;  // most files, without the time to parse them
+    const auto json = parseJson(text);
+    return json && isOfLayout(*json, layout);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+std::optional<std::string_view> imageIn(const std::filesystem::path& file, const GlbChunks& chunks, const Json& json, const char* name) {
+  for (const Json& image : json.at("images")) {
+    if (image.value("name", "") != name) continue;
+    const Json& view = json.at("bufferViews").at(size_t(wholeNumber(image.at("bufferView"))));
+    const auto offset = uint64_t(wholeNumber(view, "byteOffset", 0)), size = uint64_t(wholeNumber(view.at("byteLength")));
+    if (offset > chunks.binary.size() || size > chunks.binary.size() - offset)
+      throw InputError(file.string(), std::string("the picture '") + name + "' reaches beyond the file");
+    return chunks.binary.substr(offset, size);
+  }
+  return std::nullopt;
+}
+
+Json numbersOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
+
+Vec3 vectorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }
 
 std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
   std::map<int, int> mesh_of_node, owner_of_mesh;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -78,6 +79,17 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
 inline std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary) {
   return joinGlb(file, json, std::span(&binary, 1));
 }
+
+/// Whether the bytes are a document of a layout, as far as their metadata show; false for a damaged file.
+bool isGltfOfLayout(std::string_view bytes, const char* layout);
+
+/// The bytes of an image of this name in the binary chunk; nothing if no image has it. Throws InputError if they reach beyond the chunk,
+/// and Json::exception for metadata of other types.
+std::optional<std::string_view> imageIn(const std::filesystem::path& file, const GlbChunks& chunks, const Json& json, const char* name);
+
+/// A vector as three numbers, printed as `shortest` does, and back. Throws Json::exception.
+Json numbersOf(Vec3 v);
+Vec3 vectorOf(const Json& json);
 
 /// The name of the material that a bake gives to parts without a material.
 inline constexpr const char* kOwnMaterialName = "cloud";

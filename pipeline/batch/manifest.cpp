@@ -82,15 +82,17 @@ std::optional<SourceKind> sourceKind(std::string_view key) {
 }
 
 ManifestCloud readCloud(const toml::table& table, const std::string& file) {
-  constexpr const char* kSources = "preset, recipe, rules, from_spheres or sculpt";
+  constexpr const char* kSources = "preset, recipe, rules, from_spheres, sculpt or sequence";
   ManifestCloud cloud;
   cloud.line = int(table.source().begin.line);
   cloud.column = int(table.source().begin.column);
   for (const auto& [key, node] : inOrder(table)) {
-    if (const auto kind = sourceKind(key->str())) {
+    const bool is_sequence = key->str() == "sequence";
+    if (const auto kind = sourceKind(key->str()); kind || is_sequence) {
       if (!cloud.sources.empty()) refuseToml(file, key->source(), std::string("a cloud has only one source: give one of ") + kSources);
-      cloud.kind = *kind;
-      cloud.sources = *kind == SourceKind::kSculpt ? textsAt(*key, *node, file) : std::vector{textAt(*key, *node, file)};
+      cloud.kind = kind.value_or(SourceKind::kSculpt);
+      cloud.is_sequence = is_sequence;
+      cloud.sources = kind == SourceKind::kSculpt ? textsAt(*key, *node, file) : std::vector{textAt(*key, *node, file)};
     } else if (key->str() == "seeds") {
       cloud.seeds = seedsAt(*node, file);
     } else if (key->str() == "name") {
@@ -101,7 +103,7 @@ ManifestCloud readCloud(const toml::table& table, const std::string& file) {
   }
   if (cloud.sources.empty()) refuseToml(file, table.source(), std::string("this cloud has no source: add ") + kSources);
   if (const toml::node* seeds = table.get("seeds")) {
-    if (cloud.kind == SourceKind::kSculpt || cloud.kind == SourceKind::kSpheres)
+    if (!cloud.is_sequence && (cloud.kind == SourceKind::kSculpt || cloud.kind == SourceKind::kSpheres))
       refuseToml(file, seeds->source(), "'seeds' are for clouds that grow from rules: remove it, or set seed");
     if (table.contains("seed")) refuseToml(file, table.get("seed")->source(), "'seed' and 'seeds' are both given: give one of the two");
   }

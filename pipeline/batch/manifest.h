@@ -19,7 +19,8 @@ struct ManifestValue {
 
 /// One [[cloud]]: a preset or a file to grow, or sculpts. With several seeds or sculpts it makes one asset for each.
 struct ManifestCloud {
-  SourceKind kind = SourceKind::kPreset;
+  SourceKind kind = SourceKind::kPreset;  ///< of a sequence, whatever it names
+  bool is_sequence = false;
   std::vector<ManifestValue> sources;  ///< the preset or the file, or paths and globs of sculpts, as written
   std::vector<uint64_t> seeds;         ///< of a grown cloud; empty: the recipe's own
   std::optional<ManifestValue> name;   ///< template for the names of the outputs; overrides the manifest's
@@ -39,7 +40,9 @@ struct Manifest {
 ///   name = '{stem}.glb'         top level, optional
 ///   [defaults] OPTION = VALUE   with _ for -
 ///   [scene]                     the tables of a scene file (pipeline/scene/scene_file.h): [scene.camera], [scene.picture], [scene.sun]
-///   [[cloud]]                   preset = 'NAME' | recipe = 'FILE' | rules = 'FILE' | from_spheres = 'FILE' | sculpt = 'GLOB' or [GLOB, …];
+///   [[cloud]]                   preset = 'NAME' | recipe = 'FILE' | rules = 'FILE' | from_spheres = 'FILE' | sculpt = 'GLOB' or [GLOB, …]
+///   |
+///                               sequence = 'FRAMES', as of `cloudbake sequence`;
 ///                               seeds = [1, 2, …] or 'LOW-HIGH', name = 'TEMPLATE', OPTION = VALUE
 /// Names of options are not checked here. Throws IoError, and InputError with file, line and column for a syntax error, an
 /// unknown table or key at the top level, a wrong type, a cloud with no source or with two, or no cloud at all.

@@ -82,12 +82,21 @@ std::string lexicalFolder(const fs::path& file, const fs::path& root) {
 
 // --- Options ---
 
-std::vector<Given> optionsOf(const std::vector<ManifestValue>& values, const Manifest& manifest) {
+// An option that only sequences have, or one of the bake of their frames.
+const Option* sequenceOption(std::string_view name) {
+  const Option* option = findOption(name, kSequence);
+  return option && !(option->bits & kOfRun) ? option : nullptr;
+}
+
+std::vector<Given> optionsOf(const std::vector<ManifestValue>& values, const Manifest& manifest, bool of_sequence = false) {
   const std::string file = manifest.file.string();
   std::vector<Given> options;
   for (const ManifestValue& value : values) {
-    const Option* option = findAssetOption(value.key);
-    if (!option) refuseAt(value, file, "unknown key '" + value.key + "': give an option of `cloudbake grow` or `bake`, with _ for -");
+    const Option* option = of_sequence ? sequenceOption(value.key) : findAssetOption(value.key);
+    if (!option)
+      refuseAt(value, file,
+               fmt::format("unknown key '{}': give an option of `cloudbake {}`, with _ for -", value.key,
+                           of_sequence ? "sequence" : "grow` or `bake"));
     Given set{option, value.value, file, value.line, value.column};
     if (value.key == "scene" && !fs::path(value.value).is_absolute()) set.value = (manifest.file.parent_path() / value.value).string();
     options.push_back(std::move(set));
@@ -95,7 +104,9 @@ std::vector<Given> optionsOf(const std::vector<ManifestValue>& values, const Man
   return options;
 }
 
-bool suits(const Given& given, const PlannedAsset& asset) { return (given.option->inputs & inputBit(asset.from.kind)) != 0; }
+bool suits(const Given& given, const PlannedAsset& asset) {
+  return (given.option->inputs & inputBit(asset.from.kind)) != 0 && (!asset.is_sequence || (given.option->commands & kSequence) != 0);
+}
 
 bool isOfFrame(const Given& given) {
   const std::string_view name = given.option->name;
@@ -144,8 +155,11 @@ void estimate(PlannedAsset& asset, const Settings& settings) {
   const std::string extension = lowerCase(asset.from.input.extension().string());
   const double instances = extension == ".glb" || extension == ".gltf" ? 60e6 : 0;
   const double child = isReadByChild(asset.from.input) && asset.from.kind == SourceKind::kSculpt ? 30e6 + 20 * bytes : 0;
-  asset.memory =
-      uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances + child) + (asset.levels > 0 ? 150e6 : 0));
+  const auto frames = double(!asset.is_sequence ? 1 : asset.frames.empty() ? size_t(settings.sequence.frames) : asset.frames.size());
+  asset.cost_seconds *= frames;
+  const double at_once = asset.is_sequence ? std::min(frames, double(settings.sequence.fade) + 4) : 1;
+  asset.memory = uint64_t(
+      at_once * (12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances + child) + (asset.levels > 0 ? 150e6 : 0)));
 }
 
 // --- Assets ---
@@ -167,6 +181,8 @@ void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request) {
   const Settings settings = checkedSettings(asset, plan);
   asset.from.read.allow_outside = settings.source.read.allow_outside;
   asset.levels = settings.mesh.levels.size();
+  if (asset.is_sequence && settings.sequence.output == SequenceOutput::kKeys)
+    refuseAt(request.place, request.file, "a batch writes a sequence to one file: give as = 'morph' or 'picture'");
   estimate(asset, settings);
   plan.assets.push_back(std::move(asset));
 }
@@ -212,6 +228,7 @@ void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input
   const std::vector<Given> own = request.own;
   for (size_t i = 0; i < std::max<size_t>(1, cloud.seeds.size()); ++i) {
     PlannedAsset asset;
+    asset.is_sequence = cloud.is_sequence;
     asset.from.kind = cloud.kind;
     asset.from.input = input;
     asset.source = is_preset ? "preset " + stem : input.string();
@@ -231,6 +248,22 @@ void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input
   }
 }
 
+// The frames of a pattern or a folder: "smoke.####.vdb" makes "smoke.glb", and so does "smoke/".
+void addFrames(BatchPlan& plan, const fs::path& input, const Request& request) {
+  PlannedAsset asset;
+  asset.is_sequence = true;
+  asset.frames = frameFiles(input);
+  std::string stem = (input.has_filename() ? input : input.parent_path()).filename().string();
+  stem.erase(std::min(stem.find_first_of("#%*?["), stem.size()));
+  stem.erase(stem.find_last_not_of("._- ") + 1);
+  const Words words{{"stem", stem.empty() ? "sequence" : stem}, {"ext", ""}, {"folder", ""}};
+  nameByFile(asset, templateOf(request, "{stem}.glb"), words, input.parent_path(), request);
+  asset.source = input.string();
+  asset.from.input = asset.frames.front().file;
+  asset.from.kind = isVdbFile(asset.from.input) ? SourceKind::kVolume : SourceKind::kSculpt;
+  addAsset(plan, std::move(asset), request);
+}
+
 // Whether this batch or another one writes the file, so that a folder or a pattern does not mean it.
 bool isWritten(const BatchPlan& plan, const fs::path& file) {
   std::error_code error;
@@ -241,22 +274,38 @@ fs::path besideManifest(const Manifest& manifest, const std::string& named) {
   return fs::path(named).is_absolute() ? fs::path(named) : manifest.file.parent_path() / named;
 }
 
+ManifestCloud cloudOfKind(ManifestCloud cloud, SourceKind kind) {
+  cloud.kind = kind;
+  return cloud;
+}
+
 void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cloud, Request request, std::set<fs::path>& folders) {
   const std::string file = manifest.file.string();
-  request.own = optionsOf(cloud.options, manifest);
+  request.own = optionsOf(cloud.options, manifest, cloud.is_sequence);
   if (cloud.name) request.name = cloud.name;
   for (const ManifestValue& source : cloud.sources) {
     request.place = source;
+    if (cloud.is_sequence && !isGrown(sourceKindOf(source.value))) {
+      if (!cloud.seeds.empty()) refuseAt(source, file, "'seeds' are for clouds that grow from rules: remove it");
+      const fs::path path = besideManifest(manifest, source.value);
+      addFrames(plan, path, request);
+      folders.insert(fs::is_directory(path) ? path : path.parent_path());
+      continue;
+    }
+    if (cloud.is_sequence && findPreset(source.value)) {
+      addGrown(plan, cloudOfKind(cloud, SourceKind::kPreset), source.value, request);
+      continue;
+    }
     if (cloud.kind == SourceKind::kPreset) {
       if (!findPreset(source.value)) refuseAt(source, file, "no preset '" + source.value + "': the presets are " + presetNames());
       addGrown(plan, cloud, source.value, request);
       continue;
     }
     const fs::path path = besideManifest(manifest, source.value);
-    if (cloud.kind != SourceKind::kSculpt) {
+    if (cloud.kind != SourceKind::kSculpt || cloud.is_sequence) {
       if (!fs::is_regular_file(path))
         refuseAt(source, file, "no file '" + path.string() + "': check its name; paths are relative to the manifest");
-      addGrown(plan, cloud, path, request);
+      addGrown(plan, cloud.is_sequence ? cloudOfKind(cloud, SourceKind::kRecipe) : cloud, path, request);
       continue;
     }
     std::vector<fs::path> sculpts = filesMatching(path, folders);
@@ -340,8 +389,10 @@ void checkNames(const BatchPlan& plan, const fs::path& output) {
                         ": give a name that differs, such as '{stem}_{ext}.glb' or '{stem}_{seed}.glb'");
     }
   std::map<fs::path, const PlannedAsset*> inputs;
-  for (const PlannedAsset& asset : plan.assets)
+  for (const PlannedAsset& asset : plan.assets) {
     if (asset.from.kind != SourceKind::kPreset) inputs.emplace(fs::weakly_canonical(asset.from.input), &asset);
+    for (const FrameInput& frame : asset.frames) inputs.emplace(fs::weakly_canonical(frame.file), &asset);
+  }
   for (const PlannedAsset& asset : plan.assets)
     for (const std::string& name : namesOf(asset))
       if (const auto found = inputs.find(fs::weakly_canonical(output / name)); found != inputs.end())

@@ -10,6 +10,7 @@
 
 #include "pipeline/options/options.h"
 #include "pipeline/options/scene_needs.h"
+#include "pipeline/sequence/frames.h"
 
 namespace cloudbake {
 
@@ -20,11 +21,13 @@ struct PlannedAsset {
   std::vector<std::string> other_names;  ///< if another asset has the same name (pipeline/batch/names.h)
   size_t levels = 0;                     ///< of detail, which are outputs too: levelNames
   std::string source;                    ///< for messages: "preset humilis, seed 7", or a path
-  SourceSettings from;
-  std::vector<Given> given;  ///< options that were set for it, in order
-  double cost_seconds = 0;   ///< estimate, on one thread
-  uint64_t memory = 0;       ///< bytes, estimated upper limit
-  std::string file;          ///< the file that asks for it; empty: none
+  SourceSettings from;                   ///< of a sequence of files: its first frame
+  bool is_sequence = false;              ///< baked as `cloudbake sequence` does
+  std::vector<FrameInput> frames;        ///< of a sequence of files
+  std::vector<Given> given;              ///< options that were set for it, in order
+  double cost_seconds = 0;               ///< estimate, on one thread
+  uint64_t memory = 0;                   ///< bytes, estimated upper limit
+  std::string file;                      ///< the file that asks for it; empty: none
   int line = 0, column = 0;
 };
 

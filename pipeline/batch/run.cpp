@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "core/error.h"
 #include "core/memory_budget.h"
@@ -15,6 +16,7 @@
 #include "io/file/input_files.h"
 #include "io/file/own_file.h"
 #include "io/file/process.h"
+#include "io/gltf/sequence/sequence_file.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
 #include "pipeline/asset/asset.h"
@@ -23,6 +25,7 @@
 #include "pipeline/measure/oracle.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/options/run_files.h"
+#include "pipeline/sequence/sequence.h"
 #include "pipeline/sources/grown.h"
 
 namespace cloudbake {
@@ -39,7 +42,8 @@ size_t truthVertices(const Settings& of_run) { return of_run.judge.truth_vertice
 
 // Why the known figures cannot answer the bounds, or nothing if they can.
 std::string unmeasured(const AssetRecord& known, const Settings& of_run) {
-  if (!of_run.judge.bounds.any()) return "";
+  const bool is_sequence = known.report.is_object() && known.report.value("command", "") == "sequence";
+  if (!of_run.judge.bounds.any() || is_sequence) return "";  // `check` judges sequences
   if (!known.figures) return "error not measured yet";
   const size_t vertices = known.report.is_object() ? known.report.value("vertices", size_t(0)) : 0;
   return known.figures->vertices < std::min(truthVertices(of_run), vertices) ? "error measured at fewer vertices" : "";
@@ -59,6 +63,26 @@ BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const 
   return figures;
 }
 
+// All frames of a sequence, as `cloudbake sequence` bakes them.
+AssetBytes bakeFrames(const PlannedAsset& asset, const SourceSettings& from, Stopwatch& watch, AssetRecord& record) {
+  BakeReport report;
+  report.command = "sequence";
+  report.input = asset.source;
+  std::vector<Given> given = asset.given;
+  std::vector<FrameInput> frames = asset.frames;
+  std::optional<GrownSource> source;
+  if (isGrown(from.kind)) given = withRecipe(source.emplace(readGrownSource(from)), asset.given);
+  const Settings settings = resolve(from, given);
+  if (source) frames = grownFrames(settings.sequence, *source);
+  const BakedSequence baked = bakeSequence(frames, settings, given, report, watch);
+  const auto form = settings.sequence.output == SequenceOutput::kMorph ? SequenceForm::kMorph : SequenceForm::kTexture;
+  AssetBytes bytes{encodeSequence(baked.sequence, form), {}};
+  watch.lap(report.seconds, "encode");
+  report.output = record.name;
+  record.report = parseJson(reportJson(report)).value();
+  return bytes;
+}
+
 // Grows or reads an asset, bakes it within this memory, and measures it if there are bounds. Returns what is to be written.
 AssetBytes bake(const PlannedAsset& asset, uint64_t memory, const AssetRun& run, AssetRecord& record) {
   BakeReport report;
@@ -68,6 +92,7 @@ AssetBytes bake(const PlannedAsset& asset, uint64_t memory, const AssetRun& run,
   const std::optional<SceneNeeds> scene = sceneOf(asset, run.plan);
   SourceSettings from = asset.from;
   from.memory_limit = memory;
+  if (asset.is_sequence) return bakeFrames(asset, from, watch, record);
   std::optional<GrownSource> source;
   std::vector<Given> given;
   if (grown) given = source.emplace(readGrownSource(from)).given;
@@ -140,7 +165,7 @@ void tellOfStaleLevels(const std::filesystem::path& output, const std::string& n
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
 void make(const PlannedAsset& planned, uint64_t memory, const AssetRun& run, AssetInputs& inputs, AssetRecord& record) {
   refuseForeignOutputs(planned, run.settings);
-  InputFiles files(planned.from.read.read_file);
+  InputFiles files(planned.from.read.read_file, planned.frames.empty());
   PlannedAsset asset = planned;
   asset.from.read.read_file = [&files](const std::filesystem::path& file) { return files.read(file); };
   inputs = inputsOf({asset}, run.plan, asset.from.read.read_file).front();

@@ -46,7 +46,7 @@ std::string sceneText(const std::optional<SceneNeeds>& scene) {
 
 // The path of a scene file is left out. Its bytes count among the inputs.
 std::string settingsText(const PlannedAsset& asset, const BatchPlan& plan) {
-  std::string text = std::to_string(int(asset.from.kind)) + "\n";
+  std::string text = std::to_string(int(asset.from.kind)) + (asset.is_sequence ? " sequence\n" : "\n");
   for (const Given& given : asset.given)
     text += given.option->name + ("=" + (std::string_view(given.option->name) == "scene" ? "" : given.value)) + "\n";
   if (asset.from.read.frame_if_unstated) text += "frame if unstated\n";
@@ -141,7 +141,10 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
   Sculpts sculpts;
   for (const PlannedAsset& asset : assets) {
     if (asset.from.kind != SourceKind::kPreset) mains.insert(asset.from.input);
-    if (asset.from.kind == SourceKind::kSculpt) sculpts[asset.from.input] |= asset.from.read.allow_outside;
+    for (const FrameInput& frame : asset.frames) mains.insert(frame.file);
+    if (asset.from.kind != SourceKind::kSculpt) continue;
+    sculpts[asset.from.input] |= asset.from.read.allow_outside;
+    for (const FrameInput& frame : asset.frames) sculpts[frame.file] |= asset.from.read.allow_outside;
   }
   Files files;
   readAll(files, mains, sculpts, read_file);
@@ -159,12 +162,21 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
     if (asset.from.kind == SourceKind::kPreset) {
       text += *findPreset(asset.from.input.string());
     } else {
-      inputs.files.push_back(asset.from.input);
-      readable = !files.at(asset.from.input).hash.empty();
-      text += asset.from.input.extension().string() + "\n" + files.at(asset.from.input).hash + "\n";
-      for (const fs::path& named : files.at(asset.from.input).named) {
-        text += hashOr(files, named, kAbsent) + "\n";
-        inputs.files.push_back(named);
+      text += asset.from.input.extension().string() + "\n";
+      const auto add = [&](const fs::path& file) {
+        const InputFile& input = files.at(file);
+        inputs.files.push_back(file);
+        readable = readable && !input.hash.empty();
+        text += input.hash + "\n";
+        for (const fs::path& named : input.named) {
+          text += hashOr(files, named, kAbsent) + "\n";
+          inputs.files.push_back(named);
+        }
+      };
+      if (asset.frames.empty()) add(asset.from.input);
+      for (const FrameInput& frame : asset.frames) {
+        text += fmt::format("{} ", frame.frame);
+        add(frame.file);
       }
     }
     if (const auto scene = sceneFileOf(asset)) {

@@ -1,8 +1,10 @@
 #include "pipeline/batch/thumbnail.h"
 
 #include "bake/mesh/mesh_topology.h"
+#include "core/sequence.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
+#include "io/gltf/sequence/sequence_file.h"
 #include "io/image/image.h"
 #include "io/report/batch_report.h"
 #include "pipeline/options/resolve.h"
@@ -13,11 +15,23 @@
 
 namespace cloudbake {
 
+namespace {
+
+// What a sequence shows halfway through.
+BakedMesh meshInTheMiddle(const CloudSequence& sequence) {
+  const double seconds = sequence.period / 2 / sequence.frames_per_second;
+  return meshAt(sequence, seenAt(sequence, seconds).back());
+}
+
+}  // namespace
+
 Image drawThumbnail(const std::filesystem::path& asset, uint64_t memory_limit) {
   ReadSettings read;
   read.memory_limit = memory_limit;
   Warnings told_at_the_bake;
-  const BakedMesh mesh = decodeGlb(asset, readFileBytes(asset), told_at_the_bake, read);
+  const std::string bytes = readFileBytes(asset);
+  const BakedMesh mesh =
+      isSequence(bytes) ? meshInTheMiddle(decodeSequence(asset, bytes, memory_limit)) : decodeGlb(asset, bytes, told_at_the_bake, read);
   const PictureSettings view;
   const Camera camera = frameCamera(boundingBox(mesh.surface), kPlainView.camera_azimuth, kPlainView.camera_elevation,
                                     view.field_of_view_degrees, kThumbnailWidth, kThumbnailHeight);

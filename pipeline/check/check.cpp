@@ -1,16 +1,22 @@
 #include "pipeline/check/check.h"
-#include "pipeline/check/bake_anew.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/memory_budget.h"
+#include "core/sequence.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
+#include "io/gltf/sequence/sequence_file.h"
 #include "pipeline/check/against.h"
+#include "pipeline/check/bake_anew.h"
 #include "pipeline/check/certificate.h"
 #include "pipeline/check/judge.h"
+#include "pipeline/check/measure_keys.h"
 #include "pipeline/lobes/parameters.h"
 #include "pipeline/sources/sculpt.h"
 
@@ -108,12 +114,50 @@ Cloud cloudOfAsset(Sculpt sculpt, const Settings& settings, CheckReport& report,
   return cloud;
 }
 
+// All keys of a sequence are compared with new bakes of their meshes. The worst of them is judged as an asset is.
+void checkKeys(const Settings& settings, const std::string& bytes, CheckReport& report, Stopwatch& watch) {
+  const std::filesystem::path& file = settings.source.input;
+  const CloudSequence sequence = decodeSequence(file, bytes, settings.source.memory_limit);
+  report.run.info = sequence.info;
+  for (const SequenceSegment& segment : sequence.segments)
+    report.run.vertices += segment.keys.front().positions.size(), report.run.triangles += segment.triangles.size();
+  watch.lap(report.run.seconds, "read");
+  if ((report.verdict = oddConstants(report.run.info, meshAt(sequence, {}).surface))) return;
+  SequenceFigures& figures = report.sequence.emplace(namingFile(file.string(), [&] { return measureKeys(sequence, settings.mesh); }));
+  if (!sequence.seal.empty())
+    figures.seal = sequence.seal == sealOf(sequence) ? SequenceFigures::Seal::kWhole : SequenceFigures::Seal::kBroken;
+  watch.lap(report.run.seconds, "keys");
+
+  for (size_t i = 0; i < figures.keys.size(); ++i)
+    if (figures.keys[i].is_key && !(figures.keys[i].transmittance_rms <= figures.keys[figures.worst].transmittance_rms)) figures.worst = i;
+  const KeyFigures& worst = figures.keys[figures.worst];
+  BakedMesh mesh = meshAt(sequence, {worst.segment, worst.frame});
+  CheckedAsset asset;
+  asset.has_metadata = true;
+  asset.most_disagreement = kKeyAgreement;
+  asset.lobes = std::move(mesh.lobes);
+  asset.to_scene.resize(asset.lobes.size());
+  for (const Lobe& lobe : asset.lobes)
+    report.file.uvs.push_back({{lobe.direction.x, lobe.direction.y}, {lobe.direction.z, lobe.thickness}});
+  Sculpt sculpt;
+  sculpt.parts.push_back(
+      {"cloud", std::move(mesh.surface.positions), std::move(mesh.surface.normals), {}, std::move(mesh.surface.triangles), {}});
+  asset.cloud = cloudOfAsset(std::move(sculpt), settings, report, watch);
+  judgeLobes(asset, settings, report);
+  if (report.verdict)
+    report.verdict->what = fmt::format("the key at frame {:g}: {}", worst.frame, report.verdict->what);
+  else
+    report.verdict = judgeKeys(figures);
+  watch.lap(report.run.seconds, "truth");
+}
+
 void checkAlone(const Settings& given, CheckReport& report, const std::function<void(const std::string&)>& on_stage) {
   const std::filesystem::path& file = given.source.input;
   Stopwatch watch(on_stage);
   report.run.input = file.string();
   requireMemoryForFile(file, given.source.memory_limit);
   const std::string bytes = readFileBytes(file);
+  if (isSequence(bytes)) return checkKeys(given, bytes, report, watch);
   const StoredAsset stored = readStoredAsset(file, bytes, report.run.warnings, given.source.read);
   report.file = examineAsset(file, stored);
   Settings settings = given;

@@ -169,8 +169,9 @@ Agreement agreementOf(const CheckedAsset& asset, const Settings& settings, Check
   }
   // What a mean lobe shows does not depend on the size of the whole, a fitted one was fitted for one.
   const bool is_in_place = report.seal && !(info.lobe == "fit" ? report.seal->isReshaped() : report.seal->isDeformed());
-  agreement.most = kNoiseFactor * agreement.noise + (is_in_place           ? (asset.cloud.filled ? kFilledAgreement : kSealedAgreement)
-                                                     : !asset.has_metadata ? kUnknownAgreement
+  agreement.most = kNoiseFactor * agreement.noise + (asset.most_disagreement ? *asset.most_disagreement
+                                                     : is_in_place           ? (asset.cloud.filled ? kFilledAgreement : kSealedAgreement)
+                                                     : !asset.has_metadata   ? kUnknownAgreement
                                                      : info.level > 0 || info.separate ? kLooseAgreement
                                                                                        : kAgreement);
   return agreement;

@@ -1,6 +1,7 @@
 // Measures an asset: a sample of its vertices against the truth, and against a new bake.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pipeline/check/report.h"
@@ -16,6 +17,7 @@ struct CheckedAsset {
   std::vector<Lobe> lobes;       ///< #V, in scene space
   std::vector<float> harmonics;  ///< #V × coefficients, or empty
   bool has_metadata = false;
+  std::optional<double> most_disagreement{};  ///< of T from a new bake, rms, instead of what the metadata and the seal let expect
 };
 
 /// What the judge needs besides the figures.

@@ -1,5 +1,6 @@
 #include "pipeline/check/report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -53,6 +54,38 @@ std::string certificateText(const CertificateFigures& c) {
          (c.largest ? figureLine("", "{:.3g} is the largest found at {} vertices, {:.0f} % of the bound", *c.largest, c.matched,
                                  100 * *c.largest / double(c.proved.transmittance))
                     : "");
+}
+
+// The worst of the keys, or of the moments between them; null if there is none.
+const KeyFigures* worstOf(const SequenceFigures& figures, bool of_keys) {
+  const KeyFigures* worst = nullptr;
+  for (const KeyFigures& one : figures.keys)
+    if (one.is_key == of_keys && (!worst || !(one.transmittance_rms <= worst->transmittance_rms))) worst = &one;
+  return worst;
+}
+
+std::string sequenceText(const SequenceFigures& figures) {
+  const auto keys = std::count_if(figures.keys.begin(), figures.keys.end(), [](const KeyFigures& one) { return one.is_key; });
+  const KeyFigures &key = *worstOf(figures, true), *between = worstOf(figures, false);
+  std::string text = figureLine("sequence", "{} keys, {} segments; since the bake: {}", keys, figures.keys.back().segment + 1,
+                                figures.seal == SequenceFigures::Seal::kNone    ? "not known, there is no seal"
+                                : figures.seal == SequenceFigures::Seal::kWhole ? "the same"
+                                                                                : "changed");
+  text += figureLine("new bakes", "T differs by at most {:.4f} rms of keys (frame {:g})", key.transmittance_rms, key.frame);
+  if (between) text += figureLine("", "and {:.4f} between two keys (frame {:g})", between->transmittance_rms, between->frame);
+  return text + figureLine("worst key", "frame {:g} of segment {}:", key.frame, key.segment + 1);
+}
+
+Json sequenceJson(const SequenceFigures& figures) {
+  Json json = {{"worst_key", figures.worst}, {"keys", Json::array()}};
+  if (figures.seal != SequenceFigures::Seal::kNone) json["changed"] = figures.seal == SequenceFigures::Seal::kBroken;
+  for (const KeyFigures& one : figures.keys)
+    json["keys"].push_back({{"segment", one.segment},
+                            {"frame", one.frame},
+                            {"is_key", one.is_key},
+                            {"transmittance_rms", one.transmittance_rms},
+                            {"folded", one.folded}});
+  return json;
 }
 
 Json certificateJson(const CertificateFigures& c) {
@@ -119,6 +152,7 @@ std::string checkText(const CheckReport& report) {
     text += figureLine("lobe", "{}, k {:g}, b {:g}, extinction {:g}, in TEXCOORD_{} and TEXCOORD_{}", run.info.lobe,
                        double(run.info.shape.exponent), double(run.info.shape.bias), double(run.info.extinction), n, n + 1);
   if (report.seal) text += sealText(*report.seal);
+  if (report.sequence) text += sequenceText(*report.sequence);
   if (report.figures) text += figuresText(*report.figures, report.run.info);
   if (report.lattice_rms) text += figureLine("lattice", "T differs by {:.4f} rms from a new one", *report.lattice_rms);
   if (report.comparison) text += comparisonText(*report.comparison);
@@ -146,6 +180,7 @@ std::string checkJson(const CheckReport& report) {
     json["since_the_bake"] = {{"mesh_changed", seal.mesh}, {"constants_changed", seal.constants}, {"shape", seal.shape}};
     if (!seal.mesh) json["since_the_bake"]["lobes"] = seal.lobes, json["since_the_bake"]["harmonics"] = seal.harmonics;
   }
+  if (report.sequence) json["sequence"] = sequenceJson(*report.sequence);
   if (report.figures) json["figures"] = figuresJson(*report.figures);
   if (report.lattice_rms) json["lattice_rms"] = *report.lattice_rms;
   if (report.comparison) json["comparison"] = comparisonJson(*report.comparison);

@@ -51,6 +51,21 @@ struct CertificateFigures {
   std::optional<double> largest;  ///< the largest difference of T from it, if there is one
 };
 
+/// A key of a sequence, or the moment halfway to the next key, beside a new bake of its mesh.
+struct KeyFigures {
+  size_t segment = 0;
+  double frame = 0;
+  bool is_key = false;
+  double transmittance_rms = 0;  ///< difference of T, over vertices and lights
+  double folded = 0;             ///< the share of the triangles that face against their normals
+};
+
+struct SequenceFigures {
+  std::vector<KeyFigures> keys;
+  enum class Seal { kNone, kWhole, kBroken } seal = Seal::kNone;  ///< kBroken: numbers have changed since the bake
+  size_t worst = 0;                                               ///< the key whose CheckReport::figures are
+};
+
 struct CheckReport {
   BakeReport run;  ///< input, metadata, counts, seconds, warnings
   AssetExamination file;
@@ -59,6 +74,7 @@ struct CheckReport {
   std::optional<double> lattice_rms;  ///< rms of T of the lattice (--lattice) beside a new one
   std::optional<ComparisonFigures> comparison;
   std::optional<CertificateFigures> certificate;
+  std::optional<SequenceFigures> sequence;  ///< figures, diagnosis and bounds are then those of its worst key
   std::optional<Diagnosis> diagnosis;
   std::vector<FigureBound> bounds;    ///< the bounds that were applied
   std::optional<AssetFault> verdict;  ///< why it fails; none: it is sound

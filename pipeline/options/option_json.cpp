@@ -171,6 +171,8 @@ Json manifestSchema() {
     if (findAssetOption(option.name) == &option) options[underscored(option.name)] = optionSchema(option);
 
   Json cloud = options;
+  for (const Option& option : optionTable())
+    if (option.commands == kSequence) cloud[underscored(option.name)] = optionSchema(option);
   Json names = Json::array();
   for (const Preset& preset : presets()) names.push_back(preset.name);
   Json sources = Json::array();
@@ -182,6 +184,7 @@ Json manifestSchema() {
   addSource("recipe", kText, "recipe (.toml) to grow");
   addSource("rules", kText, "plain list of rules to grow");
   addSource("from_spheres", kText, "points and radii, .ply or .csv");
+  addSource("sequence", kText, "a cloud that changes: frames by a pattern, a folder, a preset or a recipe");
   addSource("sculpt", {{"anyOf", {kText, {{"type", "array"}, {"items", kText}, {"minItems", 1}}}}},
             "sculpt or volume: a path, a glob, or a list of them");
   cloud["seeds"] = described(
@@ -212,10 +215,13 @@ Json recipeSchema() {
   top["variables"] = {{"type", "object"}, {"additionalProperties", number}, {"description", "variables of the expressions"}};
   for (const auto& [name, keys] : tables)
     if (!name.empty()) top[std::string(name)] = tableOf(keys);
-  Json bake = Json::object();
-  for (const Option& option : optionTable())
+  Json bake = Json::object(), sequence = Json::object();
+  for (const Option& option : optionTable()) {
     if (option.bits & kInRecipe) bake[underscored(option.name)] = optionSchema(option);
+    if (option.commands == kSequence) sequence[underscored(option.name)] = optionSchema(option);
+  }
   top["bake"] = described(tableOf(bake), "options of `cloudbake grow`");
+  top["sequence"] = described(tableOf(sequence), "options of `cloudbake sequence`");
   Json recipe = tableOf(top);
   recipe["required"] = {"premise"};
   return fileSchema("cloudbake-recipe", recipe);

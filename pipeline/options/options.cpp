@@ -62,7 +62,6 @@ void setBudget(S& settings, O option, V value) {
   }
 }
 
-// "6,9,12".
 // A picture of twice as many pixels is halved six times.
 void setPixels(S& settings, O option, V value) {
   const int pixels = readNumber<int>(option, value);
@@ -71,16 +70,19 @@ void setPixels(S& settings, O option, V value) {
 }
 std::string pixelsText(const S& settings, O) { return std::to_string(settings.sequence.pixels); }
 
-// "OPTION=A:B".
+// "OPTION=A:B", or several joined by commas.
 void setVaried(S& settings, O option, V value) {
   constexpr const char* kWanted = "an option and its first and last number, such as size=0.5:1";
-  const size_t equals = value.find('='), colon = value.find(':', std::min(equals, value.size()));
-  if (equals == 0 || equals == value.npos || colon == value.npos) refuseValue(option, value, kWanted);
-  const double from = readNumber<double>(option, value.substr(equals + 1, colon - equals - 1), -1e9, 1e9),
-               to = readNumber<double>(option, value.substr(colon + 1), -1e9, 1e9);
-  settings.sequence.varied.push_back({value.substr(0, equals), from, to});
+  for (const std::string& one : readList(value)) {
+    const size_t equals = one.find('='), colon = one.find(':', std::min(equals, one.size()));
+    if (equals == 0 || equals == one.npos || colon == one.npos) refuseValue(option, one, kWanted);
+    const double from = readNumber<double>(option, one.substr(equals + 1, colon - equals - 1), -1e9, 1e9),
+                 to = readNumber<double>(option, one.substr(colon + 1), -1e9, 1e9);
+    settings.sequence.varied.push_back({one.substr(0, equals), from, to});
+  }
 }
 
+// "6,9,12".
 void setHours(S& settings, O option, V value) {
   settings.plan.hours.clear();
   for (const std::string& hour : readList(value)) settings.plan.hours.push_back(readNumber<double>(option, hour, 0, 24));
@@ -1230,13 +1232,14 @@ const Option kOptions[] = {
      .help = "fade the last frames into the first ones, so that the sequence can repeat"},
     {.name = "vary",
      .unit = "OPTION=A:B",
-     .value = {setVaried, {.shape = "W=X:X", .examples = "size=0.5:1 generations=1:5"}},
+     .value = {setVaried, {.shape = "W=X:X,…", .examples = "size=0.5:1 generations=1:5,size=1:2"}},
      .group = kOfSequence,
      .commands = kSequence,
      .common = kSequence,
      .inputs = kFromGrowth,
      .bits = kRepeats,
-     .help = "of a preset or recipe: an option of grow that changes from A to B over the frames; may be given several times"},
+     .help = "of a preset or recipe: an option of grow, or a variable of the recipe, that changes from A to B over the frames; may be "
+             "given several times"},
     {.name = "frame-count",
      .unit = "N",
      .value = numberAt<&S::sequence, &SequenceSettings::frames>(2, 10000),
@@ -1436,7 +1439,7 @@ const Option kOptions[] = {
     {.name = "force",
      .value = flagAt<kRun, &RunSettings::force>(),
      .group = kGeneral,
-     .commands = kGrow | kBake | kPreview | kMeasure | kShader | kShadow | kImpostor | kPlan | kBatch,
+     .commands = kGrow | kBake | kPreview | kMeasure | kShader | kShadow | kImpostor | kPlan | kSequence | kBatch,
      .common = kBatch | kShader,
      .bits = kOfRun | kOfOutputFiles | kNotOnPage,
      .help = "also replace files of other programs where cloudbake makes the names; batch also bakes what is up to date"},

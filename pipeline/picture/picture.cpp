@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -103,28 +104,28 @@ BakedMesh comparedMesh(const SourceSettings& source, const BakedMesh& mesh) {
                    told_for_the_asset);
 }
 
-BakedMesh readMesh(const std::filesystem::path& file, uint64_t memory_limit, Warnings& warnings) {
+// Of a sequence, the mesh at its beginning, and all of it in `sequence`.
+BakedMesh readMesh(const std::filesystem::path& file, uint64_t memory_limit, Warnings& warnings, std::optional<SceneSequence>& sequence) {
   ReadSettings read;
   read.memory_limit = memory_limit;
   requireMemoryForFile(file, memory_limit);
   const std::string bytes = readFileBytes(file);
   if (isImpostor(bytes)) return boxWithImpostor(decodeImpostor(file, bytes, memory_limit));
+  if (isSequence(bytes)) {
+    sequence.emplace().sequence = decodeSequence(file, bytes, memory_limit);
+    sequence->whole = boxOf(sequence->sequence.segments);
+    return meshAt(sequence->sequence, {});
+  }
   return decodeColoredGlb(file, bytes, warnings, read);
 }
 
 const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
   const uint64_t limit = scenery.scene.view.memory_limit;
   const auto [found, is_new] = scenery.meshes.try_emplace(keyOf(cloud));
-  if (is_new && !cloud.file.empty() && isSequence(readFileBytes(cloud.file))) {
-    SceneSequence& own = scenery.sequences[&found->second];
-    own.sequence = decodeSequence(cloud.file, readFileBytes(cloud.file), limit);
-    for (const SequenceSegment& segment : own.sequence.segments)
-      for (const SequenceKey& key : segment.keys)
-        for (const Vec3& p : key.positions) own.whole.add(p);
-    found->second = meshAt(own.sequence, {});
-  } else if (is_new) {
-    found->second = cloud.file.empty() ? grownMesh(cloud, limit, warnings) : readMesh(cloud.file, limit, warnings);
-  }
+  if (!is_new) return found->second;
+  std::optional<SceneSequence> sequence;
+  found->second = cloud.file.empty() ? grownMesh(cloud, limit, warnings) : readMesh(cloud.file, limit, warnings, sequence);
+  if (sequence) scenery.sequences.emplace(&found->second, std::move(*sequence));
   return found->second;
 }
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "bake/lobe/sweep.h"
+#include "bake/sequence/follow_surface.h"
 #include "core/lobe_lighting.h"
 #include "core/parallel.h"
 #include "preview/compare/popping.h"
@@ -18,27 +20,6 @@ namespace {
 
 constexpr int kLights = 32;
 
-BakedMesh meshOf(const CloudSequence& sequence, const SequenceSegment& segment, SequenceKey key) {
-  BakedMesh mesh;
-  mesh.surface = {std::move(key.positions), std::move(key.normals), segment.triangles};
-  mesh.lobes = std::move(key.lobes);
-  mesh.info = sequence.info;
-  return mesh;
-}
-
-Box boxOf(const SequenceSegment& segment) {
-  Box box;
-  for (const SequenceKey& key : segment.keys)
-    for (const Vec3& p : key.positions) box.add(p);
-  return box;
-}
-
-double rmsBetween(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double squares = 0;
-  for (size_t v = 0; v < a.size(); ++v) squares += double(dot(a[v] - b[v], a[v] - b[v]));
-  return std::sqrt(squares / double(std::max<size_t>(1, a.size())));
-}
-
 class Chooser {
  public:
   Chooser(const CloudSequence& sequence, const SequenceSegment& all, int pixels, double most_change)
@@ -46,7 +27,7 @@ class Chooser {
         all_(all),
         most_(most_change),
         lights_(bothSenses(sweepAxes(kLights))),
-        pictures_(boxOf(all), pixels),
+        pictures_(boxOf({&all, 1}), pixels),
         own_(all.keys.size()) {
     parallelFor(own_.size(), [&](size_t i) { own_[i] = pictures_.of(meshOf(sequence_, all_, all_.keys[i])); });
   }
@@ -58,15 +39,16 @@ class Chooser {
     for (size_t step = 1; keys.back() < last;) {
       const size_t from = keys.back(), most = last - from;
       step = std::min(step, most);
-      if (isNear(from, from + step)) {
-        while (step < most && isNear(from, from + step + 1)) ++step;
-      } else {
-        do --step;
-        while (step > 1 && !isNear(from, from + step));
+      auto changes = changesIfNear(from, from + step);
+      while (changes && step < most) {
+        auto farther = changesIfNear(from, from + step + 1);
+        if (!farther) break;
+        changes = std::move(farther), ++step;
       }
+      while (!changes) changes = changesIfNear(from, from + --step);  // the next frame is near: nothing lies between
       const size_t to = from + step;
       keys.push_back(to);
-      parallelFor(from + 1, to, [&](size_t i) { figures[i] = {changeAt(i, from, to), transmittanceRms(i, from, to)}; });
+      parallelFor(from + 1, to, [&](size_t i) { figures[i] = {(*changes)[i - from - 1], transmittanceRms(i, from, to)}; });
     }
     return keys;
   }
@@ -76,20 +58,24 @@ class Chooser {
     return blendedKey(all_.keys[from], all_.keys[to], all_.keys[frame].frame);
   }
 
-  // Those that moved farthest from the blend come first, because they are the most likely to be too far.
-  bool isNear(size_t from, size_t to) const {
+  // The changes of the frames between two keys, unless one is too large. Those that moved farthest from the blend come first, because they
+  // are the most likely to be too far.
+  std::optional<std::vector<double>> changesIfNear(size_t from, size_t to) const {
     std::vector<std::pair<double, size_t>> between;
     for (size_t i = from + 1; i < to; ++i) between.emplace_back(-rmsBetween(blended(i, from, to).positions, all_.keys[i].positions), i);
     std::sort(between.begin(), between.end());
+    std::vector<double> changes(between.size());
     constexpr size_t kTogether = 4;
     for (size_t first = 0; first < between.size(); first += kTogether) {
       std::atomic<bool> is_near = true;
       parallelFor(first, std::min(first + kTogether, between.size()), [&](size_t i) {
-        if (changeAt(between[i].second, from, to) > most_) is_near = false;
+        const size_t frame = between[i].second;
+        changes[frame - from - 1] = changeAt(frame, from, to);
+        if (changes[frame - from - 1] > most_) is_near = false;
       });
-      if (!is_near) return false;
+      if (!is_near) return std::nullopt;
     }
-    return true;
+    return changes;
   }
 
   double changeAt(size_t frame, size_t from, size_t to) const {

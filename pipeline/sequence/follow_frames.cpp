@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -85,6 +86,21 @@ Record recordOf(const std::string& bytes) {
   return record;
 }
 
+// Calls work(0) … work(count - 1) on several threads. Of what they throw, the first one by number is thrown.
+template <class Work>
+void forAll(size_t count, const Work& work) {
+  std::vector<std::exception_ptr> errors(count);
+  parallelFor(count, [&](size_t i) {
+    try {
+      work(i);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+}
+
 // --- Frames as they are read ---
 
 struct LoadedFrame {
@@ -114,16 +130,8 @@ class Frames {
     for (const size_t i : wanted)
       if (!loaded_.contains(i)) missing.push_back(i);
     std::vector<std::unique_ptr<LoadedFrame>> fresh(missing.size());
-    std::vector<std::exception_ptr> errors(missing.size());
-    parallelFor(missing.size(), [&](size_t k) {
-      try {
-        fresh[k] = load(inputs_[missing[k]]);
-      } catch (...) {
-        errors[k] = std::current_exception();
-      }
-    });
+    forAll(missing.size(), [&](size_t k) { fresh[k] = load(inputs_[missing[k]]); });
     for (size_t k = 0; k < missing.size(); ++k) {
-      if (errors[k]) std::rethrow_exception(errors[k]);
       if (const auto known = hashes_.find(missing[k]);
           known != hashes_.end() && !inputs_[missing[k]].file.empty() && known->second.own != fresh[k]->hash)
         throw changedWhileRead(inputs_[missing[k]].file);
@@ -201,7 +209,6 @@ class Frames {
 struct Held {
   Settings settings;
   AssetInfo info;
-  BakeParameters parameters;
   std::string text;  // for the keys of records
 };
 
@@ -225,7 +232,7 @@ Held heldSettings(const std::vector<FrameInput>& inputs, const Settings& setting
   const std::vector<size_t> probes{0, inputs.size() / 2, inputs.size() - 1};
   frames.prefetch(probes);
   size_t largest = 0;
-  Held held{settings, {}, {}, {}};
+  Held held{settings, {}, {}};
   for (const size_t probe : probes) {
     const LoadedFrame& frame = frames.at(probe);
     if (boundingBox(frame.cloud.surface).longestSide() > boundingBox(frames.at(largest).cloud.surface).longestSide()) largest = probe;
@@ -236,20 +243,20 @@ Held heldSettings(const std::vector<FrameInput>& inputs, const Settings& setting
   LoadedFrame& frame = frames.at(largest);
   BakeReport probe_report;
   probe_report.input = inputs[largest].name;
-  held.parameters = resolveParameters(frame.cloud, frame.settings, probe_report, watch);
+  BakeParameters parameters = resolveParameters(frame.cloud, frame.settings, probe_report, watch);
   Warnings not_of_the_sequence;
   Cloud points;
   points.surface = reduced(outerShells(*frame.cloud.solid()), settings, not_of_the_sequence);
-  const IntegrationField field = fieldOfCloud(frame.cloud, frame.settings, held.parameters, probe_report, watch);
-  held.parameters.shape = lobesAt(points.surface, field, settings.lobe, held.parameters, not_of_the_sequence).shape;
+  const IntegrationField field = fieldOfCloud(frame.cloud, frame.settings, parameters, probe_report, watch);
+  parameters.shape = lobesAt(points.surface, field, settings.lobe, parameters, not_of_the_sequence).shape;
   held.info = probe_report.info;
   held.info.field = field.kind;
-  held.info.shape = held.parameters.shape;
+  held.info.shape = parameters.shape;
   LobeSettings& lobe = held.settings.lobe;
   lobe.fit_exponent = lobe.fit_bias = false;
-  lobe.exponent = held.parameters.shape.exponent, lobe.bias = Length{held.parameters.shape.bias, false};
-  lobe.extinction_range = lobe.fit ? std::pair(held.parameters.extinction_low, held.parameters.extinction_high)
-                                   : std::pair(held.parameters.extinction, held.parameters.extinction);
+  lobe.exponent = parameters.shape.exponent, lobe.bias = Length{parameters.shape.bias, false};
+  lobe.extinction_range =
+      lobe.fit ? std::pair(parameters.extinction_low, parameters.extinction_high) : std::pair(parameters.extinction, parameters.extinction);
   held.text = buildHash() + writeInfo(held.info).dump() +
               fmt::format(" {} {}", points.surface.positions.size(), held.settings.source.volume.iso.value_or(0));
   for (const Given& one : given)
@@ -386,16 +393,9 @@ class Follower {
     unbaked_.clear();
     std::vector<std::pair<LoadedFrame*, std::vector<Place>*>> work;
     for (auto& [i, places] : by_frame) work.emplace_back(&frames_.at(i), &places);
-    std::vector<std::exception_ptr> errors(work.size());
-    parallelFor(work.size(), [&](size_t k) {
-      try {
-        for (const Place& place : *work[k].second) bakeAt(*work[k].first, place);
-      } catch (...) {
-        errors[k] = std::current_exception();
-      }
+    forAll(work.size(), [&](size_t k) {
+      for (const Place& place : *work[k].second) bakeAt(*work[k].first, place);
     });
-    for (const std::exception_ptr& error : errors)
-      if (error) std::rethrow_exception(error);
     watch_.lap(report_.seconds, "bake");
   }
 

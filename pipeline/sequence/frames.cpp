@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <map>
+#include <optional>
 #include <regex>
+#include <set>
 
 #include "core/error.h"
 #include "core/text/numbers.h"
@@ -101,6 +104,14 @@ std::vector<fs::path> filesOfInput(const fs::path& input) {
   return files;
 }
 
+// b, c and d are variables of every recipe.
+bool isVariable(const std::string& name, const GrownSource& source) {
+  if (!source.recipe) return false;
+  const auto& declared = source.recipe->grammar.variables;
+  return name == "b" || name == "c" || name == "d" ||
+         std::any_of(declared.begin(), declared.end(), [&](const auto& variable) { return variable.first == name; });
+}
+
 }  // namespace
 
 std::vector<FrameInput> frameFiles(const fs::path& input) {
@@ -132,16 +143,35 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
   return frames;
 }
 
-std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const fs::path& input) {
+std::vector<Given> withRecipe(const GrownSource& source, std::span<const Given> line) {
+  std::vector<Given> given = source.given;
+  for (const Given& one : source.of_sequence)
+    if (!(one.option->bits & kRepeats) || !isGiven(line, one.option->name)) given.push_back(one);
+  given.insert(given.end(), line.begin(), line.end());
+  return given;
+}
+
+std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const GrownSource& source) {
+  if (settings.varied.empty())
+    throw UsageError(
+        "this cloud does not change: give --vary OPTION=A:B, such as size=0.5:1, or take sprouting, fairweather or stormtower");
+  const int steps = settings.frames - 1, fade = settings.loops ? std::min(settings.fade, steps / 2) : 0;
   std::vector<FrameInput> frames;
-  for (int i = 0; i < settings.frames; ++i) {
-    FrameInput frame{double(i), fmt::format("{}, frame {}", input.string(), i), {}, {}};
-    for (const auto& [key, from, to] : settings.varied) {
-      const Option* option = findOption(key, kGrow);
+  for (int i = 0; i <= steps; ++i) {
+    FrameInput frame{double(i), fmt::format("{}, frame {}", source.file, i), {}, {}};
+    for (const auto& [name, from, to] : settings.varied) {
+      const double value = from + (to - from) * i / (steps - fade);
+      const Option* option = findOption(name, kGrow);
+      if (!option && isVariable(name, source)) {
+        frame.varied.push_back({findOption("variable", kGrow), name + "=" + shortestText(value), "", 0, 0});
+        continue;
+      }
       if (!option || option->bits & kOfRun)
-        throw UsageError(fmt::format("--vary: grow has no option '{}': `cloudbake grow --help-all` lists them", key));
-      const double value = from + (to - from) * i / (settings.frames - 1);
-      const bool is_whole = option->value.form.kind == ValueForm::kWhole || key == "generations";
+        throw UsageError(
+            fmt::format("--vary: grow has no option '{}', and {} has no variable of this name: "
+                        "`cloudbake grow --help-all` lists the options",
+                        name, source.file));
+      const bool is_whole = option->value.form.kind == ValueForm::kWhole;
       frame.varied.push_back({option, is_whole ? fmt::format("{:.0f}", value) : shortestText(float(value)), "", 0, 0});
     }
     frames.push_back(std::move(frame));

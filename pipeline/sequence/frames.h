@@ -9,6 +9,7 @@
 #include "io/report/report.h"
 #include "pipeline/fields/cloud.h"
 #include "pipeline/options/options.h"
+#include "pipeline/sources/grown.h"
 
 namespace cloudbake {
 
@@ -26,9 +27,14 @@ struct FrameInput {
 /// kinds of files.
 std::vector<FrameInput> frameFiles(const std::filesystem::path& input);
 
-/// `count` frames of a grown cloud, whose options change evenly from the first value of each of settings.sequence.varied to the second.
-/// Throws UsageError for an option that `grow` does not have or that is no number.
-std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const std::filesystem::path& input);
+/// The frames of a grown cloud, whose options, or variables of its recipe, change evenly from the first value of each of settings.varied to
+/// the second. In a loop they reach it after one period, and go on during the fade, so that what repeats is closed. Throws UsageError if
+/// nothing varies, and for a name that is neither an option of `grow` nor a variable of the recipe.
+std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const GrownSource& source);
+
+/// The options of a grown sequence: those of its recipe, which `line`, those of the command line or of a manifest, override. What `line`
+/// varies takes the place of all that the recipe varies.
+std::vector<Given> withRecipe(const GrownSource& source, std::span<const Given> line);
 
 /// A frame's cloud, and the settings of its fields: options that vary may be among them.
 struct FrameCloud {

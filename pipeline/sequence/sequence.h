@@ -37,6 +37,9 @@ struct BakedSequence {
 BakedSequence bakeSequence(const std::vector<FrameInput>& frames, const Settings& settings, std::span<const Given> given,
                            BakeReport& report, Stopwatch& watch);
 
+/// What --as keys appends to the stem of -o: segment and frame, as a pattern of RunFile.
+inline constexpr const char* kKeyFileEnding = "_[0-9][0-9]_[0-9][0-9][0-9][0-9].glb";
+
 std::string sequenceText(const BakedSequence& baked);
 Json sequenceJson(const BakedSequence& baked);
 

@@ -29,6 +29,12 @@ GrownSource sourceOfRecipe(CloudRecipe recipe, const std::filesystem::path& file
       throw InputError(source.file, line, "unknown key '" + key + "' in [bake]: `cloudbake grow --help-all` lists the options");
     source.given.push_back({option, value, source.file, line, 0});
   }
+  for (const auto& [key, value, line] : recipe.sequence_options) {
+    const Option* option = findOption(key, kSequence);
+    if (!option || option->commands != kSequence)
+      throw InputError(source.file, line, "unknown key '" + key + "' in [sequence]: `cloudbake sequence --help` lists the options");
+    source.of_sequence.push_back({option, value, source.file, line, 0});
+  }
   source.recipe = std::move(recipe);
   return source;
 }

@@ -18,14 +18,15 @@ namespace cloudbake {
 struct GrownSource {
   std::optional<CloudRecipe> recipe;
   std::vector<Sphere> spheres;
-  std::string file;          ///< for messages: a path, or "preset humilis"
-  std::string name;          ///< of the cloud's only part
-  std::string bytes;         ///< the input as it was read
-  std::vector<Given> given;  ///< the seed and the [bake] table of a recipe
+  std::string file;                ///< for messages: a path, or "preset humilis"
+  std::string name;                ///< of the cloud's only part
+  std::string bytes;               ///< the input as it was read
+  std::vector<Given> given;        ///< the seed and the [bake] table of a recipe
+  std::vector<Given> of_sequence;  ///< its [sequence] table: options that only `sequence` has
 };
 
 /// Reads the source; isGrown(source.kind) must hold. Throws IoError, and InputError for an unknown preset, a damaged file or an unknown key
-/// in [bake].
+/// in [bake] or [sequence].
 GrownSource readGrownSource(const SourceSettings& source);
 
 /// Grows the spheres and, unless settings.source.spheres_only is set, their level set and surface. If the settings have no vertex budget,

@@ -86,12 +86,19 @@ Image tonesOf(const Image& colors, const std::vector<uint8_t>& shows, const Imag
   return tones;
 }
 
+// 1 for each pixel that shows more than the sky.
+std::vector<uint8_t> showsOf(const Image& picture, const Image& sky) {
+  constexpr float kSeen = 1e-3F;  // of an opacity
+  std::vector<uint8_t> shows(sky.pixels.size());
+  for (size_t i = 0; i < sky.pixels.size(); ++i) shows[i] = length(picture.pixels[i] - sky.pixels[i]) > kSeen;
+  return shows;
+}
+
 // At one of the sizes of the skies.
 Picture pictureOf(const BakedMesh& mesh, const Camera& camera, float half_lambert, const Skies& skies, size_t size = 0) {
-  constexpr float kSeen = 1e-3F;  // of an opacity
   const Image& sky = skies.colors[size];
-  Picture picture{drawn(mesh, camera, half_lambert, &sky), {}, std::vector<uint8_t>(sky.pixels.size())};
-  for (size_t i = 0; i < sky.pixels.size(); ++i) picture.shows[i] = length(picture.colors.pixels[i] - sky.pixels[i]) > kSeen;
+  Picture picture{drawn(mesh, camera, half_lambert, &sky), {}, {}};
+  picture.shows = showsOf(picture.colors, sky);
   picture.tones = tonesOf(picture.colors, picture.shows, skies.tones[size]);
   return picture;
 }
@@ -188,12 +195,11 @@ SidePictures::SidePictures(const Box& box, int pixels) : sides_(std::size(kCamer
 SidePictures::~SidePictures() = default;
 
 SidePictures::Taken SidePictures::of(const BakedMesh& mesh) const {
-  constexpr float kSeen = 1e-3F;
   std::vector<Taken> taken(sides_.size());
   parallelFor(sides_.size(), [&](size_t i) {
     const Side& side = sides_[i];
     const Image half = halved(drawn(mesh, side.camera, LightSettings{}.half_lambert, &side.sky));
-    for (size_t p = 0; p < half.pixels.size(); ++p) taken[i].shows.push_back(length(half.pixels[p] - side.half_sky.pixels[p]) > kSeen);
+    taken[i].shows = showsOf(half, side.half_sky);
     for (const Vec3& tone : tonesOf(half, taken[i].shows, side.half_tones).pixels) {
       const auto byte = [](float value) { return uint8_t(std::lround(255 * std::clamp(value, 0.0F, 1.0F))); };
       taken[i].values.push_back({byte(tone.x), byte(tone.y), byte(tone.z)});

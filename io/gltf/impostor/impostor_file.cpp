@@ -17,9 +17,6 @@ namespace {
 
 constexpr int kVersion = 1;
 
-Json numbersOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
-Vec3 vectorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }
-
 Json writeImpostorInfo(const ImpostorInfo& info) {
   Json json{{"layout", kImpostorLayout},
             {"version", kVersion},
@@ -119,16 +116,7 @@ ImpostorFiles encodeImpostor(const Impostor& impostor, const Billboard& billboar
   return files;
 }
 
-bool isImpostor(std::string_view bytes) {
-  try {
-    const std::string_view text = splitGlb("", bytes).json;
-    if (text.find(kImpostorLayout) == text.npos) return false;  // most files, without the time to parse them
-    const auto json = parseJson(text);
-    return json && isImpostorDocument(*json);
-  } catch (const std::exception&) {
-    return false;
-  }
-}
+bool isImpostor(std::string_view bytes) { return isGltfOfLayout(bytes, kImpostorLayout); }
 
 Impostor decodeImpostor(const std::filesystem::path& file, std::string_view bytes, uint64_t memory_limit) {
   const GlbChunks chunks = splitGlb(file, bytes);
@@ -166,19 +154,14 @@ Impostor decodeImpostor(const std::filesystem::path& file, std::string_view byte
       if (!std::isfinite(number)) throw InputError(file.string(), "a number of the impostor is not finite in 32 bits");
     if (!(info.radius > 0) || !std::isfinite(info.radius)) throw InputError(file.string(), "the impostor's radius must be above 0");
     const auto picture = [&](const char* name) {
-      for (const Json& image : json.at("images")) {
-        if (image.value("name", "") != name) continue;
-        const Json& view = json.at("bufferViews").at(size_t(wholeNumber(image.at("bufferView"))));
-        const auto offset = uint64_t(wholeNumber(view, "byteOffset", 0)), size = uint64_t(wholeNumber(view.at("byteLength")));
-        if (offset > chunks.binary.size() || size > chunks.binary.size() - offset)
-          throw InputError(file.string(), std::string("the picture '") + name + "' reaches beyond the file");
-        Image decoded = decodePng(chunks.binary.substr(offset, size), file.string(), memory_limit);
-        if (decoded.width != info.views * info.frame || decoded.height != decoded.width)
-          throw InputError(file.string(), std::string("the picture '") + name + "' has another size than views times frame");
-        return decoded;
-      }
-      throw InputError(file.string(), std::string("the impostor has no picture '") + name +
-                                          "': a tool has removed it; use the file that `cloudbake impostor` wrote");
+      const auto bytes_of_picture = imageIn(file, chunks, json, name);
+      if (!bytes_of_picture)
+        throw InputError(file.string(), std::string("the impostor has no picture '") + name +
+                                            "': a tool has removed it; use the file that `cloudbake impostor` wrote");
+      Image decoded = decodePng(*bytes_of_picture, file.string(), memory_limit);
+      if (decoded.width != info.views * info.frame || decoded.height != decoded.width)
+        throw InputError(file.string(), std::string("the picture '") + name + "' has another size than views times frame");
+      return decoded;
     };
     Impostor impostor{info, {picture("lobe")}, {picture("rest")}};
     addMipLevels(impostor);

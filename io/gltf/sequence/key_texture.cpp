@@ -62,12 +62,10 @@ std::vector<KeyTexturePlace> placesInTexture(const CloudSequence& sequence) {
 int rowsOfTexture(const std::vector<KeyTexturePlace>& places) { return places.back().first_row + places.back().rows(); }
 
 KeyTextureScale scaleOfTexture(const CloudSequence& sequence) {
-  KeyTextureScale scale;
+  KeyTextureScale scale{boxOf(sequence.segments)};
   for (const SequenceSegment& segment : sequence.segments)
-    for (const SequenceKey& key : segment.keys) {
-      for (const Vec3& p : key.positions) scale.box.add(p);
+    for (const SequenceKey& key : segment.keys)
       for (const Lobe& lobe : key.lobes) scale.densest = std::max(scale.densest, lobe.thickness);
-    }
   return scale;
 }
 

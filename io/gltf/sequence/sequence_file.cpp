@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "core/lobe_packing.h"
 #include "core/text/json.h"
 #include "core/text/maker.h"
+#include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/asset_info.h"
 #include "io/gltf/document.h"
@@ -25,8 +27,6 @@ namespace {
 
 constexpr int kVersion = 1;
 constexpr const char *kPictureName = "keys", *kCure = ": make it again with `cloudbake sequence`";
-
-Json numbersOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 
 // --- Writing ---
 
@@ -197,19 +197,6 @@ AssetInfo assetInfoOf(const std::filesystem::path& file, const Json& document) {
   return info;
 }
 
-Image pictureOf(const std::filesystem::path& file, const Json& json, std::string_view binary, uint64_t memory_limit) {
-  for (const Json& image : json.at("images")) {
-    if (image.value("name", "") != kPictureName) continue;
-    const Json& view = json.at("bufferViews").at(size_t(wholeNumber(image.at("bufferView"))));
-    const auto offset = uint64_t(wholeNumber(view, "byteOffset", 0)), size = uint64_t(wholeNumber(view.at("byteLength")));
-    if (offset > binary.size() || size > binary.size() - offset)
-      throw InputError(file.string(), "the picture of its keys reaches beyond the file");
-    return decodePng(binary.substr(offset, size), file.string(), memory_limit);
-  }
-  throw InputError(file.string(),
-                   "the sequence has no picture of its keys: a tool has removed it; use the file that `cloudbake sequence` wrote");
-}
-
 // The key of a mesh: its base, or its base and one target.
 class KeyReader {
  public:
@@ -314,8 +301,6 @@ SequenceSegment readSegment(const std::filesystem::path& file, const Json& own, 
   return segment;
 }
 
-Vec3 vectorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }
-
 }  // namespace
 
 std::string encodeSequence(const CloudSequence& sequence, SequenceForm form) {
@@ -363,19 +348,27 @@ std::string encodeSequence(const CloudSequence& sequence, SequenceForm form) {
   json["accessors"] = document.accessors;
   json["bufferViews"] = document.views;
   json["buffers"] = {{{"byteLength", document.bytes.size()}}};
+  json["asset"]["extras"]["cloudbake"]["sequence"]["seal"] = sealOf(decodeSequence("", joinGlb("", json.dump(), document.bytes)));
   return joinGlb("", json.dump(), document.bytes);
 }
 
-bool isSequence(std::string_view bytes) {
-  try {
-    const std::string_view text = splitGlb("", bytes).json;
-    if (text.find(kSequenceLayout) == text.npos) return false;  // most files, without the time to parse them
-    const auto json = parseJson(text);
-    return json && isSequenceDocument(*json);
-  } catch (const std::exception&) {
-    return false;
+std::string sealOf(const CloudSequence& sequence) {
+  const AssetInfo& info = sequence.info;
+  std::string bytes = fmt::format("{} {} {}", info.shape.exponent, info.shape.bias, info.extinction);
+  const auto append = [&](const auto& values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values.front()));
+  };
+  for (const SequenceSegment& segment : sequence.segments) {
+    append(segment.triangles);
+    for (const SequenceKey& key : segment.keys) {
+      bytes += fmt::format(" {} ", key.frame);
+      append(key.positions), append(key.normals), append(key.lobes);
+    }
   }
+  return hashBytes(bytes);
 }
+
+bool isSequence(std::string_view bytes) { return isGltfOfLayout(bytes, kSequenceLayout); }
 
 CloudSequence decodeSequence(const std::filesystem::path& file, std::string_view bytes, uint64_t memory_limit) {
   const GlbChunks chunks = splitGlb(file, bytes);
@@ -390,12 +383,17 @@ CloudSequence decodeSequence(const std::filesystem::path& file, std::string_view
     sequence.frames_per_second = own.at("frames_per_second").get<double>();
     sequence.loops = own.at("loops").get<bool>();
     sequence.period = own.at("period").get<double>();
+    sequence.seal = own.value("seal", "");
     if (!(sequence.frames_per_second > 0) || !std::isfinite(sequence.frames_per_second) || !(sequence.period >= 0) ||
         !std::isfinite(sequence.period))
       throw InputError(file.string(), std::string("frames_per_second or the period of the sequence is out of range") + kCure);
     std::optional<KeyPicture> picture;
     if (own.at("keys") == "picture") {
-      picture = {pictureOf(file, *parsed, chunks.binary, memory_limit),
+      const auto bytes_of_picture = imageIn(file, chunks, *parsed, kPictureName);
+      if (!bytes_of_picture)
+        throw InputError(file.string(),
+                         "the sequence has no picture of its keys: a tool has removed it; use the file that `cloudbake sequence` wrote");
+      picture = {decodePng(*bytes_of_picture, file.string(), memory_limit),
                  {{vectorOf(own.at("box").at(0)), vectorOf(own.at("box").at(1))}, own.at("density_max").get<float>()}};
       if (picture->image.width != kSequenceColumns || wholeNumber(own.at("columns")) != kSequenceColumns)
         throw InputError(file.string(), std::string("the picture of the keys has another width") + kCure);

@@ -22,6 +22,9 @@ inline constexpr int kSequenceColumns = 1024, kMostSequenceRows = 16384;
 /// The bytes of a GLB. The same sequence gives the same bytes. Throws InputError if the picture would have more than kMostSequenceRows.
 std::string encodeSequence(const CloudSequence& sequence, SequenceForm form);
 
+/// A hash of what a decoded sequence shows: triangles, frames, positions, normals, lobes, k, b and the extinction. The file records it.
+std::string sealOf(const CloudSequence& sequence);
+
 /// Whether the bytes are a sequence, as far as their metadata show; false for a damaged file.
 bool isSequence(std::string_view bytes);
 

@@ -1,6 +1,12 @@
 // Whole batches: what is written beside the assets, and reports of shards as one.
 #include "pipeline/batch/batch.h"
 
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "core/sequence.h"
+#include "io/gltf/sequence/sequence_file.h"
 #include "pipeline/batch/thumbnail.h"
 #include "tests/pipeline/batch/batch_helpers.h"
 
@@ -51,6 +57,29 @@ TEST(Batch, WritesTheReportsThatAreAskedFor) {
   settings.batch.depfile_target = "all";
   bakeAll(settings);
   EXPECT_EQ(readFileBytes(folder.path / "r.d").find("all:"), 0U);
+}
+
+TEST(Batch, ASequenceIsOneAsset) {
+  const BatchFolder folder;
+  fs::create_directories(folder.in / "f");
+  for (int i = 1; i <= 3; ++i) folder.write(fmt::format("in/f/ball.{:04}.obj", i), objText(ballMesh(1 + 0.02F * float(i), 3)));
+  const Settings settings = folder.manifest(
+      "[defaults]\nrays = 16\nvoxels = 30\nvertices = 300\n"
+      "[[cloud]]\nsequence = 'f/ball.####.obj'\nfps = 12\nas = 'picture'\n"
+      "[[cloud]]\nsequence = 'fairweather'\nframe_count = 2\nvary = ['life=0.2:0.21', 'size=1:1.02']\nseeds = [3]\n");
+  setenv("XDG_CACHE_HOME", (folder.path / "cache").c_str(), 1);
+  const BatchReport first = bakeAll(settings);
+  ASSERT_EQ(assetStates(first), (std::vector{AssetState::kBaked, AssetState::kBaked})) << first.assets[0].error << first.assets[1].error;
+  const fs::path file = folder.out / "ball.glb";
+  const CloudSequence sequence = decodeSequence(file, readFileBytes(file));
+  EXPECT_EQ(sequence.frames_per_second, 12);
+  EXPECT_EQ(sequence.period, 2);
+  EXPECT_TRUE(isSequence(readFileBytes(folder.out / "fairweather_3.glb")));
+  EXPECT_EQ(drawThumbnail(file, kMemoryLimit).width, kThumbnailWidth);
+  EXPECT_EQ(assetStates(bakeAll(settings)), (std::vector{AssetState::kFresh, AssetState::kFresh}));
+  folder.write("in/f/ball.0003.obj", objText(ballMesh(1.2F, 3)));
+  EXPECT_EQ(assetStates(bakeAll(settings)), (std::vector{AssetState::kBaked, AssetState::kFresh})) << "one frame has changed";
+  unsetenv("XDG_CACHE_HOME");
 }
 
 // A build tool would run for ever for a file that does not exist. The folder where it would appear tells of it.

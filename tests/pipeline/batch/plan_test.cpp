@@ -47,6 +47,27 @@ TEST(Plan, NamesOfSculpts) {
   EXPECT_EQ(namesOf(planBatch(folder.manifest("[[cloud]]\nsculpt = 'b.obj'\nname = '{folder}/{stem}.glb'\n"), {}).assets), Names{"b.glb"});
 }
 
+TEST(Plan, NamesOfSequences) {
+  const BatchFolder folder;
+  for (const char* name : {"f/smoke_0001.obj", "f/smoke_0002.obj", "g/1.obj", "g/2.obj"}) folder.box(name);
+  const BatchPlan plan = planBatch(folder.manifest("[[cloud]]\nsequence = 'f/smoke_####.obj'\nloop = true\n"
+                                                   "[[cloud]]\nsequence = 'f'\n[[cloud]]\nsequence = 'g/*.obj'\n"
+                                                   "[[cloud]]\nsequence = 'sprouting'\nseeds = [1, 2]\n"),
+                                   {});
+  EXPECT_EQ(namesOf(plan.assets), (Names{"smoke.glb", "f.glb", "sequence.glb", "sprouting_1.glb", "sprouting_2.glb"}));
+  EXPECT_EQ(plan.assets[0].frames.size(), 2U);
+  EXPECT_TRUE(resolved(plan.assets[0]).sequence.loops);
+  for (const auto& [text, message] :
+       {std::pair("fps = 12\npreset = 'hero'", "unknown key 'fps': give an option of `cloudbake grow` or `bake`"),
+        std::pair("sequence = 'f'\nsh = 3", "unknown key 'sh': give an option of `cloudbake sequence`"),
+        std::pair("sequence = 'f'\nseeds = [1]", "'seeds' are for clouds that grow from rules"),
+        std::pair("sequence = 'f'\nas = 'keys'", "a batch writes a sequence to one file"), std::pair("sequence = 'none/#.vdb'", "none")}) {
+    SCOPED_TRACE(text);
+    const Settings settings = folder.manifest(std::string("[[cloud]]\n") + text + "\n");
+    EXPECT_TRUE(contains(refusalOf<Error>([&] { planBatch(settings, {}); }), message));
+  }
+}
+
 // The name of the command line, of the manifest and of the cloud: the nearest to the cloud is used.
 TEST(Plan, WhichNameIsUsed) {
   const BatchFolder folder;

@@ -169,6 +169,9 @@ TEST(FileSchemas, WhatIsNoSingleValue) {
   EXPECT_TRUE(fits(recipe, jsonOf("premise = 'F'\n[bake]\nrays = 36\nnoise = '3%'")));
   EXPECT_FALSE(fits(recipe, jsonOf("premise = 'F'\n[bake]\nthreads = 3")));
   EXPECT_FALSE(fits(recipe, jsonOf("premise = 'F'\n[bake]\nrays = 0")));
+  EXPECT_TRUE(fits(recipe, jsonOf("premise = 'F'\n[sequence]\nvary = ['b=0:1', 'c=1:2']\nframe_count = 30\nloop = true")));
+  EXPECT_TRUE(fits(recipe, jsonOf("premise = 'F'\n[sequence]\nvary = 'b=0:1'")));
+  EXPECT_FALSE(fits(recipe, jsonOf("premise = 'F'\n[sequence]\nrays = 32")));
   for (const char* text :
        {"name = '{stem}.glb'\n[[cloud]]\nsculpt = ['a.obj', '*.ply']", "[[cloud]]\nsculpt = []", "[[cloud]]\nsculpt = '*.obj'\nname = ''",
         "[[cloud]]\npreset = 'hero'\nseeds = [1, 2]", "[[cloud]]\npreset = 'hero'\nseeds = '1-12'",

@@ -84,14 +84,27 @@ TEST_F(SequenceTest, RefusesFilesThatAreNoSequence) {
 TEST_F(SequenceTest, AGrownCloudVariesEvenly) {
   SequenceSettings settings;
   settings.frames = 5;
-  settings.varied = {{"size", 1, 3}, {"generations", 1, 3}};
-  const std::vector<FrameInput> frames = grownFrames(settings, "humilis");
+  settings.varied = {{"size", 1, 3}, {"voxels", 40, 43}, {"boil", 0, 1}};
+  const GrownSource source = readGrownSource(sourceOf(SourceKind::kPreset, "sprouting"));
+  const std::vector<FrameInput> frames = grownFrames(settings, source);
   ASSERT_EQ(frames.size(), 5U);
   EXPECT_EQ(frames[1].varied[0].value, "1.5");
   EXPECT_EQ(frames[4].varied[0].value, "3");
-  EXPECT_EQ(frames[1].varied[1].value, "2") << "whole numbers are rounded";
+  EXPECT_EQ(frames[1].varied[1].value, "41") << "whole numbers are rounded";
+  EXPECT_EQ(frames[1].varied[2].value, "boil=0.25") << "a variable of the recipe";
   settings.varied = {{"nonsense", 1, 3}};
-  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { grownFrames(settings, "humilis"); }), "grow has no option 'nonsense'"));
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { grownFrames(settings, source); }), "grow has no option 'nonsense'"));
+}
+
+TEST_F(SequenceTest, AGrownLoopGoesOnDuringItsFade) {
+  SequenceSettings settings;
+  settings.frames = 13;
+  settings.fade = 4;
+  settings.loops = true;
+  settings.varied = {{"boil", 0, 1}};
+  const std::vector<FrameInput> frames = grownFrames(settings, readGrownSource(sourceOf(SourceKind::kPreset, "sprouting")));
+  EXPECT_EQ(frames[8].varied[0].value, "boil=1") << "after one period, which ends where the fade begins";
+  EXPECT_EQ(frames[12].varied[0].value, "boil=1.5");
 }
 
 // A ball that grows by its own scale is blended exactly, so that two keys are enough, and its lobe is known: towards the centre, 2 r thick.
