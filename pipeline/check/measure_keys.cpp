@@ -21,7 +21,7 @@ namespace {
 
 constexpr size_t kVertices = 200, kAxes = 32;
 // Halfway between two keys, lobes are blended too.
-constexpr double kAgreementBetween = 0.06, kMostFolded = 0.05;
+constexpr double kAgreementBetween = 0.1, kMostFolded = 0.05;
 
 // Of the triangles, those that face against their own normals.
 double foldedShare(const SurfaceMesh& mesh) {

@@ -15,6 +15,6 @@ SequenceFigures measureKeys(const CloudSequence& sequence, const MeshSettings& m
 std::optional<AssetFault> judgeKeys(const SequenceFigures& figures);
 
 /// How much T may differ from that of a new bake of a key's mesh, rms. The lobes of a key have seen what --detail removes from its mesh.
-inline constexpr double kKeyAgreement = 0.05;
+inline constexpr double kKeyAgreement = 0.1;
 
 }  // namespace cloudbake

@@ -14,9 +14,9 @@ using namespace cloudbake;
 
 namespace {
 
-constexpr const char* kPresets[] = {"puffball",    "humilis", "mediocris",    "congestus", "anvil",   "stratoroll",
-                                    "castellanus", "hero",    "lenticularis", "toon",      "swirl",   "fractus",
-                                    "bank",        "cirrus",  "cumulonimbus", "horizon",   "mammatus"};
+constexpr const char* kPresets[] = {"puffball",     "humilis",      "mediocris", "congestus", "anvil",       "stratoroll", "castellanus",
+                                    "hero",         "lenticularis", "toon",      "swirl",     "fractus",     "bank",       "cirrus",
+                                    "cumulonimbus", "horizon",      "mammatus",  "sprouting", "fairweather", "stormtower"};
 
 CloudRecipe recipeIn(const std::string& folder, const std::string& name) {
   std::ifstream file(sourceFolder() / folder / (name + ".toml"), std::ios::binary);
@@ -59,8 +59,9 @@ TEST(Recipe, Row33Counts) {
 // All seeds are different, of one part once connected (unless parts are intended), and on average of the width and height that the files
 // state.
 TEST(Presets, SeedsDifferAndHangTogether) {
-  const double sizes[][2] = {{3.0, 2.1}, {4.8, 2.2}, {5.1, 3.8}, {6.2, 7.1},  {8.4, 7.0}, {8.0, 2.1}, {9.4, 2.9}, {7.1, 5.4}, {6.5, 1.7},
-                             {4.9, 2.4}, {7.3, 4.8}, {6.4, 1.7}, {32.4, 5.1}, {9, 3},     {14, 9},    {40, 5},    {9, 2}};
+  const double sizes[][2] = {{3.0, 2.1}, {4.8, 2.2}, {5.1, 3.8}, {6.2, 7.1}, {8.4, 7.0}, {8.0, 2.1},  {9.4, 2.9},
+                             {7.1, 5.4}, {6.5, 1.7}, {4.9, 2.4}, {7.3, 4.8}, {6.4, 1.7}, {32.4, 5.1}, {9, 3},
+                             {14, 9},    {40, 5},    {9, 2},     {5, 4.6},   {12, 1.4},  {7, 6}};
   constexpr uint64_t kSeeds = 60;
   static_assert(std::size(sizes) == std::size(kPresets));
   for (size_t p = 0; p < std::size(sizes); ++p) {
