@@ -1,4 +1,4 @@
-// cloudbake sequence FRAMES -o cloud.glb: a cloud that changes, from the frames of a simulation or a growing cloud.
+// cloudbake sequence FRAMES -o cloud.glb: a cloud that changes, from the frames of a simulation, an animation or a growing cloud.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -46,10 +46,10 @@ ExitCode runSequence(const CommandLine& line) {
   report.command = "sequence";
   report.input = line.input.string();
   Stopwatch watch = watchOnTerminal(line.quiet);
-  const bool grows = isGrown(sourceKindOf(line.input));
+  const bool grows = isGrown(sourceKindOf(line.input)), is_animated = !grows && mayBeAnimated(line.input);
   CommandLine first = line;
   std::vector<FrameInput> frames;
-  if (!grows) {
+  if (!grows && !is_animated) {
     frames = frameFiles(line.input);
     first.input = frames.front().file;
   }
@@ -58,10 +58,17 @@ ExitCode runSequence(const CommandLine& line) {
     const std::vector<Given> of_recipe = readGrownSource(sourceOf(line)).given;
     given.insert(given.begin(), of_recipe.begin(), of_recipe.end());
   }
-  const Settings settings = settingsOf(first, given);
+  Settings settings = settingsOf(first, given);
   if (grows && settings.sequence.varied.empty())
     throw UsageError("a preset or recipe needs --vary OPTION=A:B: what changes over the frames, such as size=0.5:1");
   if (grows) frames = grownFrames(settings.sequence, line.input);
+  if (!grows && !is_animated && (settings.sequence.frames || !settings.sequence.animation.empty()))
+    throw UsageError("--frame-count and --animation do not apply to frames that are files: leave them out");
+  if (is_animated) {
+    AnimationFrames animation = animationFrames(settings);
+    frames = std::move(animation.frames);
+    settings.sequence.frames_per_second = animation.frames_per_second;
+  }
   const BakedSequence baked = bakeSequence(frames, settings, given, report, watch);
   std::vector<WrittenFile> files;
   switch (settings.sequence.output) {

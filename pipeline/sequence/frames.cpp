@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <regex>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/numbers.h"
 #include "core/text/scan.h"
 #include "io/file/find_files.h"
@@ -117,7 +119,8 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
   if (numbered.size() < 2)
     throw InputError(
         input.string(),
-        fmt::format("{} found, and a sequence has at least two: give a folder, or a pattern in quotes such as 'smoke.####.vdb'",
+        fmt::format("{} found, and a sequence has at least two: give a folder, a pattern in quotes such as 'smoke.####.vdb', or one "
+                    "glTF, GLB or FBX with an animation",
                     numbered.empty() ? "no frame was" : "only one frame was"));
   std::vector<FrameInput> frames;
   for (size_t i = 0; i < numbered.size(); ++i) {
@@ -132,15 +135,46 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
   return frames;
 }
 
+bool mayBeAnimated(const fs::path& input) {
+  const std::string extension = lowerCase(input.extension().string());
+  std::error_code error;
+  return (extension == ".gltf" || extension == ".glb" || extension == ".fbx") && fs::is_regular_file(input, error);
+}
+
+AnimationFrames animationFrames(const Settings& settings) {
+  constexpr double kMostFrames = 10000;
+  const fs::path& file = settings.source.input;
+  ReadSettings first = settings.source.read;
+  first.moment = {settings.sequence.animation, 0};
+  Warnings again;  // come again with the frames
+  const auto read = [&] { return readMesh(file, first, again).animation_seconds; };
+  const double seconds = namingFile(file.string(), [&] { return inStage("reading this sculpt", "use one with fewer vertices", read); });
+  AnimationFrames animation{{}, settings.sequence.frames_per_second.value_or(kFramesPerSecond)};
+  const double count = settings.sequence.frames ? *settings.sequence.frames : std::round(seconds * animation.frames_per_second) + 1;
+  if (count < 2 || count > kMostFrames)
+    throw UsageError(
+        fmt::format("{}: its animation of {:.4g} seconds has {:.0f} frames, and 2 to {:.0f} are possible: give another --fps, or "
+                    "--frame-count",
+                    file.string(), seconds, count, kMostFrames));
+  if (settings.sequence.frames && !settings.sequence.frames_per_second) animation.frames_per_second = (count - 1) / seconds;
+  for (int i = 0; i < int(count); ++i) {
+    const double at = settings.sequence.frames ? seconds * i / (count - 1) : i / animation.frames_per_second;
+    animation.frames.push_back(
+        {double(i), fmt::format("{}, frame {}", file.string(), i), file, {}, AnimationMoment{settings.sequence.animation, at}});
+  }
+  return animation;
+}
+
 std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const fs::path& input) {
   std::vector<FrameInput> frames;
-  for (int i = 0; i < settings.frames; ++i) {
+  const int count = settings.frames.value_or(60);
+  for (int i = 0; i < count; ++i) {
     FrameInput frame{double(i), fmt::format("{}, frame {}", input.string(), i), {}, {}};
     for (const auto& [key, from, to] : settings.varied) {
       const Option* option = findOption(key, kGrow);
       if (!option || option->bits & kOfRun)
         throw UsageError(fmt::format("--vary: grow has no option '{}': `cloudbake grow --help-all` lists them", key));
-      const double value = from + (to - from) * i / (settings.frames - 1);
+      const double value = from + (to - from) * i / (count - 1);
       const bool is_whole = option->value.form.kind == ValueForm::kWhole || key == "generations";
       frame.varied.push_back({option, is_whole ? fmt::format("{:.0f}", value) : shortestText(float(value)), "", 0, 0});
     }
@@ -161,8 +195,10 @@ FrameCloud readFrame(const FrameInput& frame, const Settings& settings, std::spa
   }
   Settings own = settings;
   own.source.input = frame.file;
+  own.source.read.moment = frame.moment;
   own.mesh.vertices.reset();
-  return {readCloud(own, report, watch), own.field};
+  const auto read = [&] { return readCloud(own, report, watch); };
+  return {renamingFile(frame.file.string(), frame.name, read), own.field};
 }
 
 }  // namespace cloudbake

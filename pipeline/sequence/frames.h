@@ -1,23 +1,30 @@
-// The frames of a sequence: files in the order of their numbers, or a cloud that grows with a key that varies.
+// The frames of a sequence: files in the order of their numbers, moments of the animation of one file, or a cloud that grows with a key
+// that varies.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "io/file/read_settings.h"
 #include "io/report/report.h"
 #include "pipeline/fields/cloud.h"
 #include "pipeline/options/options.h"
 
 namespace cloudbake {
 
+/// Of a sequence, if neither an option nor an animation says it.
+inline constexpr double kFramesPerSecond = 24;
+
 /// A frame's place in time and what it is made of.
 struct FrameInput {
-  double frame = 0;                ///< counted from the first one
-  std::string name;                ///< for messages
-  std::filesystem::path file;      ///< empty for a grown cloud
-  std::vector<Given> varied = {};  ///< options of a grown cloud that this frame sets
+  double frame = 0;                            ///< counted from the first one
+  std::string name;                            ///< for messages
+  std::filesystem::path file;                  ///< empty for a grown cloud
+  std::vector<Given> varied = {};              ///< options of a grown cloud that this frame sets
+  std::optional<AnimationMoment> moment = {};  ///< of the file's animation
 };
 
 /// The files that an input names, by number: of a folder, those that can be baked; of a pattern, `#` stands for a digit and `####` for at
@@ -26,7 +33,19 @@ struct FrameInput {
 /// kinds of files.
 std::vector<FrameInput> frameFiles(const std::filesystem::path& input);
 
-/// `count` frames of a grown cloud, whose options change evenly from the first value of each of settings.sequence.varied to the second.
+/// Whether an input is one file of a format whose animations can become frames: glTF, GLB or FBX.
+bool mayBeAnimated(const std::filesystem::path& input);
+
+struct AnimationFrames {
+  std::vector<FrameInput> frames;
+  double frames_per_second = kFramesPerSecond;
+};
+/// The frames of settings.sequence.animation of the file settings.source.input: one for each frame from its start to its end, or
+/// settings.sequence.frames, spread evenly, which are shown in the time of the animation if no frames per second are set. Throws InputError
+/// if the file cannot be read or has no such animation, and UsageError for fewer than two or too many frames.
+AnimationFrames animationFrames(const Settings& settings);
+
+/// settings.frames of a grown cloud, whose options change evenly from the first value of each of settings.sequence.varied to the second.
 /// Throws UsageError for an option that `grow` does not have or that is no number.
 std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const std::filesystem::path& input);
 
