@@ -70,27 +70,21 @@ struct IoError : Error {
   IoError(std::string in_file, std::string what_and_cure) : Error(ExitCode::kSystem, std::move(in_file), 0, 0, std::move(what_and_cure)) {}
 };
 
-/// Runs `body`. If it throws an error whose file is `from`, the error is thrown again with `to` as its file.
+/// Runs `body`. If it throws an error that names no file, the error is thrown again with `file` as its file.
 template <class Body>
-auto renamingFile(const std::string& from, const std::string& to, const Body& body) {
+auto namingFile(const std::string& file, const Body& body) {
   try {
     return body();
   } catch (const MemoryError& error) {
-    if (error.file != from) throw;
-    throw MemoryError(to, error.message);
+    if (!error.file.empty()) throw;
+    throw MemoryError(file, error.message);
   } catch (const InputError& error) {
-    if (error.file != from) throw;
-    throw InputError(to, error.line, error.column, error.message);
+    if (!error.file.empty()) throw;
+    throw InputError(file, error.line, error.column, error.message);
   } catch (const Error& error) {
-    if (error.file != from || error.code == ExitCode::kUsage) throw;
-    throw Error(error.code, to, error.line, error.column, error.message);
+    if (!error.file.empty() || error.code == ExitCode::kUsage) throw;
+    throw Error(error.code, file, error.line, error.column, error.message);
   }
-}
-
-/// The same for an error that names no file.
-template <class Body>
-auto namingFile(const std::string& file, const Body& body) {
-  return renamingFile("", file, body);
 }
 
 }  // namespace cloudbake

@@ -183,6 +183,25 @@ std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const fs::
   return frames;
 }
 
+namespace {
+
+// Reads a frame. Errors of its file name the frame, which may be a moment of that file.
+template <class Read>
+Cloud namingFrame(const FrameInput& frame, const Read& read) {
+  const std::string file = frame.file.string();
+  try {
+    return read();
+  } catch (const MemoryError& error) {
+    if (error.file != file) throw;
+    throw MemoryError(frame.name, error.message);
+  } catch (const InputError& error) {
+    if (error.file != file) throw;
+    throw InputError(frame.name, error.line, error.column, error.message);
+  }
+}
+
+}  // namespace
+
 FrameCloud readFrame(const FrameInput& frame, const Settings& settings, std::span<const Given> given, BakeReport& report) {
   Stopwatch watch;
   if (frame.file.empty()) {
@@ -197,8 +216,7 @@ FrameCloud readFrame(const FrameInput& frame, const Settings& settings, std::spa
   own.source.input = frame.file;
   own.source.read.moment = frame.moment;
   own.mesh.vertices.reset();
-  const auto read = [&] { return readCloud(own, report, watch); };
-  return {renamingFile(frame.file.string(), frame.name, read), own.field};
+  return {namingFrame(frame, [&] { return readCloud(own, report, watch); }), own.field};
 }
 
 }  // namespace cloudbake
