@@ -12,7 +12,7 @@ using namespace cloudbake;
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-const std::vector<Vec3> kCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+const std::vector<Vec3> kAtRest{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 // A tetrahedron under node 0, and an animation to which channels are added.
 struct AnimatedBuilder : GltfBuilder {
@@ -148,7 +148,7 @@ TEST(Animate, MorphWeightsMoveCorners) {
   gltf.target({{1, 0, 0}, {}, {}, {}});
   gltf.target({{0, 2, 0}, {0, 0, 3}, {}, {}});
   gltf.channel("weights", {0, 1}, {0, 0, 1, 0.5F});
-  EXPECT_EQ(gltf.cornersAt(0), kCorners);
+  EXPECT_EQ(gltf.cornersAt(0), kAtRest);
   expectNear(gltf.cornersAt(0.5)[0], {0.5F, 0.5F, 0});
   expectNear(gltf.cornersAt(1)[1], {1, 0, 1.5F});
   EXPECT_TRUE(gltf.warnings.empty());
@@ -175,10 +175,10 @@ TEST(Animate, BonesCarryTheirSkin) {
     const auto byUpper = [&](Vec3 p) { return Vec3{float(p.x + t), p.y, p.z}; };
     const auto byLower = [&](Vec3 p) { return Vec3{float(cos * p.x - sin * (p.y - 3) + t), float(sin * p.x + cos * (p.y - 3) + 3), p.z}; };
     const std::vector<Vec3> found = gltf.cornersAt(t);
-    expectNear(found[0], byUpper(kCorners[0]));
-    expectNear(found[1], byUpper(kCorners[1]) * 0.25F + byLower(kCorners[1]) * 0.75F);
-    expectNear(found[2], byUpper(kCorners[2]) * 0.5F + byLower(kCorners[2]) * 0.5F);
-    expectNear(found[3], byLower(kCorners[3]));
+    expectNear(found[0], byUpper(kAtRest[0]));
+    expectNear(found[1], byUpper(kAtRest[1]) * 0.25F + byLower(kAtRest[1]) * 0.75F);
+    expectNear(found[2], byUpper(kAtRest[2]) * 0.5F + byLower(kAtRest[2]) * 0.5F);
+    expectNear(found[3], byLower(kAtRest[3]));
   }
 }
 
