@@ -78,10 +78,11 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake plan sky.toml -o planned\n  cloudbake plan sky.toml --hours 7,12,17 --region -40,2,-40:40,6,40 -o planned\n"
      "  cloudbake plan sky.toml --budget change=2,vertices=100000 --path 0,2,60:0,2,-60 -o planned",
      "DIR", runPlan, "folder to write the assets and scene.toml to", "", "scene.toml"},
-    {kSequence, "sequence", "FRAMES", "frames: a pattern in quotes such as 'smoke.####.vdb', a folder, or a preset or recipe with --vary",
-     "bake a cloud that changes, from the frames of a simulation or of a growing cloud, to one GLB",
+    {kSequence, "sequence", "FRAMES",
+     "frames: a pattern in quotes such as 'smoke.####.vdb', a folder, a glTF or FBX with an animation, or a preset or recipe with --vary",
+     "bake a cloud that changes, from the frames of a simulation, an animation or a growing cloud, to one GLB",
      "Examples:\n  cloudbake sequence 'smoke.####.vdb' --fps 24 -o smoke.glb\n  cloudbake sequence frames/ --loop --as picture -o "
-     "loop.glb\n"
+     "loop.glb\n  cloudbake sequence walk.glb --animation Walk -o walking.glb\n"
      "  cloudbake sequence congestus --vary size=0.5:1 --frame-count 48 -o grows.glb",
      "FILE", runSequence, "file to write", ".glb"},
     {kCheck, "check", "ASSET.glb", "baked asset to check",

@@ -1,4 +1,4 @@
-// cloudbake sequence FRAMES -o cloud.glb: a cloud that changes, from the frames of a simulation or a growing cloud.
+// cloudbake sequence FRAMES -o cloud.glb: a cloud that changes, from the frames of a simulation, an animation or a growing cloud.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -66,13 +66,15 @@ ExitCode runSequence(const CommandLine& line) {
   if (isGrown(sourceKindOf(line.input))) {
     source = readGrownSource(sourceOf(line));
     given = withRecipe(*source, line.given);
-  } else {
+  } else if (!mayBeAnimated(line.input)) {
     frames = frameFiles(line.input);
     refuseToReplaceFrames(frames, line);
     first.input = frames.front().file;
   }
-  const Settings settings = settingsOf(first, given);
-  if (source) frames = grownFrames(settings.sequence, *source);
+  Settings settings = settingsOf(first, given);
+  if (!frames.empty() && (settings.sequence.frames || !settings.sequence.animation.empty()))
+    throw UsageError("--frame-count and --animation do not apply to frames that are files: leave them out");
+  if (frames.empty()) frames = madeFrames(settings, source);
   const BakedSequence baked = bakeSequence(frames, settings, given, report, watch);
   std::vector<WrittenFile> files;
   switch (settings.sequence.output) {

@@ -87,6 +87,7 @@ struct Sculpt {
   std::vector<SculptNode> nodes{};
   std::vector<SculptMaterial> materials{};
   std::vector<SculptImage> images{};
+  double animation_seconds = 0;  ///< how long the animation is by which the sculpt was posed (ReadSettings::moment)
 };
 
 /// The part of every vertex, in the order of the parts.

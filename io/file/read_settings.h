@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "core/memory_budget.h"
 #include "io/file/write_file.h"
@@ -11,6 +12,12 @@
 namespace cloudbake {
 
 enum class UpAxis { kX, kY, kZ };
+
+/// A moment of an animation.
+struct AnimationMoment {
+  std::string animation;  ///< its name; empty: the first one of the file
+  double seconds = 0;     ///< since its first key
+};
 
 /// The frame is for files that state none or a wrong one. glTF's frame is fixed, so setting it for a glTF is an error, unless it is for the
 /// files of a mixed folder that state none.
@@ -20,6 +27,7 @@ struct ReadSettings {
   bool frame_if_unstated = false;           ///< a unit or an axis that the file states is kept
   bool allow_outside = false;               ///< a file may refer to files outside its own folder
   std::optional<int> scene_index{};         ///< glTF: the scene to bake, ≥ 0; unset = the file's default scene
+  std::optional<AnimationMoment> moment{};  ///< glTF, FBX: the pose of the sculpt; unset = as the file has it without an animation
   uint64_t memory_limit = kMemoryLimit;     ///< bytes; an estimate above this is an error
   /// A program whose main passes `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h). Formats read by assimp are then read
   /// in a child process of this program. Empty: they are read in this process.

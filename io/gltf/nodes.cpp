@@ -3,6 +3,7 @@
 #include "io/gltf/nodes.h"
 
 #include "core/error.h"
+#include "core/quaternion.h"
 
 namespace cloudbake {
 
@@ -20,12 +21,7 @@ Affine localTransform(const tinygltf::Node& node) {
     }
     return m;
   }
-  if (node.rotation.size() == 4) {
-    const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-    m.linear = {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                 {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                 {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-  }
+  if (node.rotation.size() == 4) m = rotationBy({node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]});
   for (size_t c = 0; c < 3; ++c) {
     if (node.scale.size() == 3)
       for (size_t r = 0; r < 3; ++r) m.linear[r][c] *= node.scale[c];

@@ -14,13 +14,6 @@ namespace cloudbake {
 
 namespace {
 
-// Own space → the space below the root.
-Affine belowRoot(const aiNode& node) {
-  Affine map;
-  for (const aiNode* n = &node; n->mParent; n = n->mParent) map = compose(toAffine(n->mTransformation), map);
-  return map;
-}
-
 void addScaled(Affine& sum, const Affine& map, double by) {
   for (size_t r = 0; r < 3; ++r) {
     for (size_t c = 0; c < 3; ++c) sum.linear[r][c] += by * map.linear[r][c];
@@ -29,6 +22,12 @@ void addScaled(Affine& sum, const Affine& map, double by) {
 }
 
 }  // namespace
+
+Affine belowRoot(const aiNode& node) {
+  Affine map;
+  for (const aiNode* n = &node; n->mParent; n = n->mParent) map = compose(toAffine(n->mTransformation), map);
+  return map;
+}
 
 void JointPoses::find(const aiScene& scene, bool by_blender) {
   by_blender_ = by_blender;

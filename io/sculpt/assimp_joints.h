@@ -1,4 +1,4 @@
-// The pose that joints give the meshes of a Collada scene.
+// The pose that joints give the meshes of a scene.
 #pragma once
 
 #include <filesystem>
@@ -14,6 +14,9 @@ struct aiNode;
 struct aiScene;
 
 namespace cloudbake {
+
+/// Own space → the space below the root.
+Affine belowRoot(const aiNode& node);
 
 class JointPoses {
  public:

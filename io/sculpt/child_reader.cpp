@@ -110,8 +110,8 @@ auto membersOf(Is<SculptImage> auto& image) {
   return std::tie(name, bytes, mime_type);
 }
 auto membersOf(Is<Sculpt> auto& sculpt) {
-  auto& [parts, gltf, frame_note, nodes, materials, images] = sculpt;  // no foreign format is glTF
-  return std::tie(parts, frame_note, nodes, materials, images);
+  auto& [parts, gltf, frame_note, nodes, materials, images, animation_seconds] = sculpt;  // no foreign format is glTF
+  return std::tie(parts, frame_note, nodes, materials, images, animation_seconds);
 }
 
 struct SculptWriter {
@@ -226,6 +226,7 @@ pid_t startChild(const fs::path& file, const std::string& bytes, const std::stri
                       {settings.child_program.string(), kChildReaderCommand, file.string(), extension,
                        settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
                        settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
+                       settings.moment ? shortestText(settings.moment->seconds) : "", settings.moment ? settings.moment->animation : "",
                        std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) +
                            (settings.allow_outside ? " 1" : " 0") + (settings.frame_if_unstated ? " 1" : " 0")},
                       inherited);
@@ -306,10 +307,10 @@ Sculpt readInChild(const fs::path& file, const std::string& bytes, const std::st
 }
 
 int serveChildReader(int argc, char** argv) {
-  if (argc != 6) return 1;
+  if (argc != 8) return 1;
   endWithParent();
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches this process too, but the parent decides whether to stop
-  std::string_view limits = argv[5];
+  std::string_view limits = argv[7];
   const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits)),
              if_unstated = parseInteger(takeWord(limits));
   if (!seconds || !memory || !outside || !if_unstated) return 1;
@@ -323,6 +324,7 @@ int serveChildReader(int argc, char** argv) {
     settings.frame_if_unstated = *if_unstated != 0;
     settings.metres_per_unit = parseNumber(argv[3]);
     if (const auto axis = parseInteger(argv[4])) settings.up_axis = UpAxis(*axis);
+    if (const auto moment = parseNumber(argv[5])) settings.moment = {argv[6], *moment};
     FilesRead files;
     settings.read_file = [&](const fs::path& other) {
       std::string& hash = files.emplace_back(other.string(), "").second;

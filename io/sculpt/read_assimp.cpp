@@ -23,6 +23,7 @@
 #include "core/text/scan.h"
 #include "io/file/neighbour.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/assimp_animation.h"
 #include "io/sculpt/assimp_fbx.h"
 #include "io/sculpt/assimp_joints.h"
 #include "io/sculpt/assimp_materials.h"
@@ -177,9 +178,9 @@ SculptPart partFromMesh(const fs::path& file, const aiMesh& mesh, Warnings& warn
   return part;
 }
 
-void countPose(const fs::path& file, const aiMesh& mesh, bool is_posed, Warnings& warnings) {
+void countPose(const fs::path& file, const aiMesh& mesh, bool is_posed, bool is_morphed, Warnings& warnings) {
   warnings.add(WarningKind::kPoseIgnored, file.string() + ": bones or morph targets are ignored; the stored pose was read",
-               (mesh.HasBones() && !is_posed) || mesh.mNumAnimMeshes > 0);
+               (mesh.HasBones() && !is_posed) || (mesh.mNumAnimMeshes > 0 && !is_morphed));
 }
 
 // Whether a node is one of the helpers that assimp makes of an FBX node's pivots: NAME_$AssimpFbx$_Translation and so on.
@@ -190,6 +191,8 @@ struct Extras {
   bool skip_root = false;  // its transform is the frame, which is applied already
   const JointPoses* joints = nullptr;
   std::optional<std::vector<FbxNode>> fbx;
+  std::optional<AssimpPose> pose;  // of the nodes, by an animation
+  Affine frame;                    // from below the root to metres, +Y up
 };
 
 // A node with its parts. `shown`: whether they are part of the sculpt.
@@ -207,9 +210,11 @@ void addNode(const fs::path& file, const aiScene& scene, const aiNode& node, Scu
     const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
     SculptPart part = partFromMesh(file, mesh, warnings);
     if (part.triangles.empty()) continue;
-    countPose(file, mesh, extras.joints && extras.joints->pose(node.mMeshes[i], mesh, node, part, file, warnings), warnings);
+    if (extras.pose) extras.pose->morph(mesh, node, part);
+    countPose(file, mesh, extras.joints && extras.joints->pose(node.mMeshes[i], mesh, node, part, file, warnings), extras.pose.has_value(),
+              warnings);
     part.name = sculpt.nodes.back().name;
-    part.to_scene = to_scene.back();
+    part.to_scene = extras.pose ? compose(extras.frame, belowRoot(node)) : to_scene.back();
     part.object = part.node = index;
     part.material = int(mesh.mMaterialIndex);  // of the scene until keepMaterials
     sculpt.parts.push_back(weldCorners(part));
@@ -218,15 +223,14 @@ void addNode(const fs::path& file, const aiScene& scene, const aiNode& node, Scu
 
 // Nodes and their parts, depth first. The stack is explicit, because a file may be nested arbitrarily deep. A helper is joined with the
 // node below it, unless it has something else to hold.
-void collectNodes(const fs::path& file, const aiScene& scene, const Affine& frame, const Extras& extras, Sculpt& sculpt,
-                  Warnings& warnings) {
+void collectNodes(const fs::path& file, const aiScene& scene, const Extras& extras, Sculpt& sculpt, Warnings& warnings) {
   struct Visit {
     const aiNode* node;
     int parent;
     Affine before;  // transforms of helpers between the parent and this node, or the frame
   };
   std::vector<Affine> to_scene;
-  std::vector<Visit> stack{{scene.mRootNode, -1, frame}};
+  std::vector<Visit> stack{{scene.mRootNode, -1, extras.frame}};
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
@@ -245,8 +249,7 @@ void collectNodes(const fs::path& file, const aiScene& scene, const Affine& fram
 }
 
 // The same from the models of an FBX. A node of the output has its model's geometric transform too, which its children must not get.
-void collectModels(const fs::path& file, const aiScene& scene, const Affine& frame, const Extras& extras, Sculpt& sculpt,
-                   Warnings& warnings) {
+void collectModels(const fs::path& file, const aiScene& scene, const Extras& extras, Sculpt& sculpt, Warnings& warnings) {
   std::vector<Affine> to_scene;
   std::vector<FbxPlace> places;
   std::vector<bool> hides;  // children
@@ -254,7 +257,7 @@ void collectModels(const fs::path& file, const aiScene& scene, const Affine& fra
   for (const FbxNode& found : *extras.fbx) {
     const bool is_root = found.parent < 0;
     FbxPlace place = placeFbxModel(*found.model, is_root ? FbxPlace() : places[size_t(found.parent)]);
-    const auto undone = is_root ? std::optional(frame) : inverted(places[size_t(found.parent)].geometric);
+    const auto undone = is_root ? std::optional(extras.frame) : inverted(places[size_t(found.parent)].geometric);
     guessed += !place.is_exact || !undone;
     bool hides_children = false;
     const bool shown = !found.model->isHidden(!is_root && hides[size_t(found.parent)], hides_children);
@@ -266,6 +269,27 @@ void collectModels(const fs::path& file, const aiScene& scene, const Affine& fra
   warnings.add(WarningKind::kTransformGuessed,
                file.string() + ": a model's rotation order, or how it inherits scale, has no exact meaning here; its place may differ",
                guessed);
+}
+
+// Counts models that assimp places elsewhere than our rules do. An animation moves assimp's nodes.
+void countOtherPlaces(const fs::path& file, const std::vector<FbxNode>& nodes, Warnings& warnings) {
+  constexpr double kTolerance = 1e-4;  // of the largest number of the transform
+  std::vector<FbxPlace> places;
+  uint64_t others = 0;
+  for (const FbxNode& one : nodes) {
+    places.push_back(placeFbxModel(*one.model, one.parent < 0 ? FbxPlace() : places[size_t(one.parent)]));
+    const Affine ours = compose(places.back().global, places.back().geometric), theirs = belowRoot(*one.node);
+    double off = 0, largest = 0;
+    const auto compare = [&](double a, double b) { off = std::max(off, std::fabs(a - b)), largest = std::max(largest, std::fabs(a)); };
+    for (size_t r = 0; r < 3; ++r) {
+      for (size_t c = 0; c < 3; ++c) compare(ours.linear[r][c], theirs.linear[r][c]);
+      compare(ours.offset[r], theirs.offset[r]);
+    }
+    others += off > kTolerance * largest;
+  }
+  warnings.add(WarningKind::kTransformGuessed,
+               file.string() + ": how a model inherits scale, or its rotation order, does not count in an animation; its place may differ",
+               others);
 }
 
 // The models of an FBX in the order of assimp's nodes, and its settings.
@@ -385,7 +409,8 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& as_stored, const 
     found = frameOfAmf(file, bytes);
   }
   const aiScene* scene = readScene(importer, file, bytes, settings, true);
-  warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations are ignored; the stored pose was read", scene->mNumAnimations);
+  warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations are ignored; the stored pose was read",
+               settings.moment ? 0 : scene->mNumAnimations);
   warnings.add(WarningKind::kCameraIgnored, file.string() + ": cameras are not kept", scene->mNumCameras);
   warnings.add(WarningKind::kLightIgnored, file.string() + ": lights are not kept", scene->mNumLights);
 
@@ -402,8 +427,15 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& as_stored, const 
       extras.joints = &joints;
     }
   }
-  const Affine frame = sceneFrame(file, found, settings, sculpt.frame_note, warnings);
-  (extras.fbx ? collectModels : collectNodes)(file, *scene, frame, extras, sculpt, warnings);
+  extras.frame = sceneFrame(file, found, settings, sculpt.frame_note, warnings);
+  if (settings.moment) {
+    if (extras.fbx) countOtherPlaces(file, *extras.fbx, warnings);
+    extras.pose = poseByAnimation(file, *settings.moment, const_cast<aiScene&>(*scene));  // the importer's own scene is not const
+    sculpt.animation_seconds = extras.pose->animation_seconds;
+    joints.find(*scene, false);
+    extras.joints = &joints;
+  }
+  (extras.fbx ? collectModels : collectNodes)(file, *scene, extras, sculpt, warnings);
   if (sculpt.parts.empty() && warnings.entries().contains(WarningKind::kHiddenPart))
     throw InputError(file.string(), "all its meshes are hidden; show them and export the file again");
   dropNamelessHierarchy(file, sculpt);

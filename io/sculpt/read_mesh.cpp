@@ -117,6 +117,8 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
       throw InputError(file.string(), "glTF has a fixed unit and up axis; leave --units and --up out, or change the file's root node");
     return readGltf(file, bytes, settings, warnings);
   }
+  if (settings.moment && extension != "fbx")
+    throw InputError(file.string(), "animations of this format cannot be read; export the sculpt as glTF or FBX");
   if (settings.scene_index) throw InputError(file.string(), "only glTF has scenes to choose from; leave --scene-index out for this file");
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
   const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& one) { return one.extension == extension; });

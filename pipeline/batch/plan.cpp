@@ -155,7 +155,9 @@ void estimate(PlannedAsset& asset, const Settings& settings) {
   const std::string extension = lowerCase(asset.from.input.extension().string());
   const double instances = extension == ".glb" || extension == ".gltf" ? 60e6 : 0;
   const double child = isReadByChild(asset.from.input) && asset.from.kind == SourceKind::kSculpt ? 30e6 + 20 * bytes : 0;
-  const auto frames = double(!asset.is_sequence ? 1 : asset.frames.empty() ? size_t(settings.sequence.frames) : asset.frames.size());
+  const auto frames = double(!asset.is_sequence     ? 1
+                             : asset.frames.empty() ? size_t(settings.sequence.frames.value_or(kGrownFrames))
+                                                    : asset.frames.size());
   asset.cost_seconds *= frames;
   const double at_once = asset.is_sequence ? std::min(frames, double(settings.sequence.fade) + 4) : 1;
   asset.memory = uint64_t(
@@ -181,6 +183,8 @@ void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request) {
   const Settings settings = checkedSettings(asset, plan);
   asset.from.read.allow_outside = settings.source.read.allow_outside;
   asset.levels = settings.mesh.levels.size();
+  if (!asset.frames.empty() && (settings.sequence.frames || !settings.sequence.animation.empty()))
+    refuseAt(request.place, request.file, "frame_count and animation do not apply to frames that are files: leave them out");
   if (asset.is_sequence && settings.sequence.output == SequenceOutput::kKeys)
     refuseAt(request.place, request.file, "a batch writes a sequence to one file: give as = 'morph' or 'picture'");
   estimate(asset, settings);
@@ -248,18 +252,19 @@ void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input
   }
 }
 
-// The frames of a pattern or a folder: "smoke.####.vdb" makes "smoke.glb", and so does "smoke/".
+// The frames of a pattern, a folder or an animation: "smoke.####.vdb" makes "smoke.glb", and so does "smoke/".
 void addFrames(BatchPlan& plan, const fs::path& input, const Request& request) {
   PlannedAsset asset;
   asset.is_sequence = true;
-  asset.frames = frameFiles(input);
+  const bool is_animated = mayBeAnimated(input);
+  if (!is_animated) asset.frames = frameFiles(input);
   std::string stem = (input.has_filename() ? input : input.parent_path()).filename().string();
-  stem.erase(std::min(stem.find_first_of("#%*?["), stem.size()));
+  stem.erase(is_animated ? input.stem().string().size() : std::min(stem.find_first_of("#%*?["), stem.size()));
   stem.erase(stem.find_last_not_of("._- ") + 1);
   const Words words{{"stem", stem.empty() ? "sequence" : stem}, {"ext", ""}, {"folder", ""}};
   nameByFile(asset, templateOf(request, "{stem}.glb"), words, input.parent_path(), request);
   asset.source = input.string();
-  asset.from.input = asset.frames.front().file;
+  asset.from.input = is_animated ? input : asset.frames.front().file;
   asset.from.kind = isVdbFile(asset.from.input) ? SourceKind::kVolume : SourceKind::kSculpt;
   addAsset(plan, std::move(asset), request);
 }

@@ -72,8 +72,8 @@ AssetBytes bakeFrames(const PlannedAsset& asset, const SourceSettings& from, Sto
   std::vector<FrameInput> frames = asset.frames;
   std::optional<GrownSource> source;
   if (isGrown(from.kind)) given = withRecipe(source.emplace(readGrownSource(from)), asset.given);
-  const Settings settings = resolve(from, given);
-  if (source) frames = grownFrames(settings.sequence, *source);
+  Settings settings = resolve(from, given);
+  if (frames.empty()) frames = madeFrames(settings, source);
   const BakedSequence baked = bakeSequence(frames, settings, given, report, watch);
   const auto form = settings.sequence.output == SequenceOutput::kMorph ? SequenceForm::kMorph : SequenceForm::kTexture;
   AssetBytes bytes{encodeSequence(baked.sequence, form), {}};

@@ -203,13 +203,14 @@ enum class SequenceOutput { kMorph, kPicture, kKeys };
 
 /// The frames that `sequence` reads, and what it keeps of them.
 struct SequenceSettings {
-  double frames_per_second = 24;
-  int pixels = 128;            ///< that the longest side covers in the pictures that decide which frames are kept
-  double change = 1;           ///< that these pictures may have: rms of their 8-bit values over pixels that show the cloud
-  Length detail{0.02F, true};  ///< what is narrower than two of it is left out of the mesh, though not of the lobes
-  int fade = 4;                ///< frames over which one segment takes the place of another
-  bool loops = false;          ///< the last frames fade into the first ones
-  int frames = 60;             ///< of a grown cloud
+  std::optional<double> frames_per_second;  ///< unset: 24
+  int pixels = 128;                         ///< that the longest side covers in the pictures that decide which frames are kept
+  double change = 1;                        ///< that these pictures may have: rms of their 8-bit values over pixels that show the cloud
+  Length detail{0.02F, true};               ///< what is narrower than two of it is left out of the mesh, though not of the lobes
+  int fade = 4;                             ///< frames over which one segment takes the place of another
+  bool loops = false;                       ///< the last frames fade into the first ones
+  std::optional<int> frames;  ///< of a grown cloud (unset: 60) or of an animation (unset: as many as the frames per second make)
+  std::string animation;      ///< of a file with several; empty: the first one
   struct Varied {
     std::string option;
     double from = 0, to = 0;

@@ -155,11 +155,16 @@ class Frames {
   std::unique_ptr<LoadedFrame> load(const FrameInput& input) const {
     auto frame = std::make_unique<LoadedFrame>();
     BakeReport report;
-    auto [cloud, field] = readFrame(input, settings_, given_, report);
+    Settings reading = settings_;
+    reading.source.read.read_file = [&](const std::filesystem::path& file) {
+      std::string bytes = settings_.source.read.read_file(file);
+      if (file == input.file) frame->hash = hashBytes(bytes);
+      return bytes;
+    };
+    auto [cloud, field] = readFrame(input, reading, given_, report);
     frame->cloud = std::move(cloud);
     frame->settings = settings_;
     frame->settings.field = field;
-    frame->hash = report.info.input_hash;
     if (!frame->cloud.solid())
       throw InputError(input.name, "the mesh encloses nothing, so that it cannot be followed: close it, or give --close wrap");
     if (is_followed_) takeSurface(input, *frame, report.warnings);
@@ -177,18 +182,25 @@ class Frames {
     frame.topology = topologyOf(frame.outer);
   }
 
-  Hashes hashed(const FrameInput& input) const {
+  Hashes hashed(const FrameInput& input) {
     if (input.file.empty()) {
       std::string made_from = readGrownSource(settings_.source).bytes;
       for (const Given& one : input.varied) made_from += fmt::format("\n{}={}", one.option->name, one.value);
       const std::string hash = hashBytes(made_from);
       return {hash, hash};
     }
-    const std::string bytes = settings_.source.read.read_file(input.file);
+    const auto found = of_files_.find(input.file);
+    Hashes hashes = found != of_files_.end() ? found->second : of_files_.emplace(input.file, hashedFile(input.file)).first->second;
+    if (input.moment) hashes.all = hashBytes(fmt::format("{} {} {}", hashes.all, input.moment->seconds, input.moment->animation));
+    return hashes;
+  }
+
+  Hashes hashedFile(const std::filesystem::path& file) const {
+    const std::string bytes = settings_.source.read.read_file(file);
     Hashes hashes{hashBytes(bytes), ""};
     std::string all = hashes.own;
-    if (canReferToFiles(input.file))
-      for (const auto& named : referencedFiles(input.file, bytes, settings_.source.read)) {
+    if (canReferToFiles(file))
+      for (const auto& named : referencedFiles(file, bytes, settings_.source.read)) {
         std::error_code error;
         if (std::filesystem::is_regular_file(named, error)) all += hashBytes(settings_.source.read.read_file(named));
       }
@@ -202,6 +214,7 @@ class Frames {
   bool is_followed_;
   std::map<size_t, std::unique_ptr<LoadedFrame>> loaded_;
   std::map<size_t, Hashes> hashes_;
+  std::map<std::filesystem::path, Hashes> of_files_;
 };
 
 // --- What is the same for all frames ---

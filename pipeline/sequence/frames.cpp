@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/numbers.h"
 #include "core/text/scan.h"
 #include "io/file/find_files.h"
@@ -128,7 +130,8 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
   if (numbered.size() < 2)
     throw InputError(
         input.string(),
-        fmt::format("{} found, and a sequence has at least two: give a folder, or a pattern in quotes such as 'smoke.####.vdb'",
+        fmt::format("{} found, and a sequence has at least two: give a folder, a pattern in quotes such as 'smoke.####.vdb', or one "
+                    "glTF, GLB or FBX with an animation",
                     numbered.empty() ? "no frame was" : "only one frame was"));
   std::vector<FrameInput> frames;
   for (size_t i = 0; i < numbered.size(); ++i) {
@@ -143,6 +146,36 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
   return frames;
 }
 
+bool mayBeAnimated(const fs::path& input) {
+  const std::string extension = lowerCase(input.extension().string());
+  std::error_code error;
+  return (extension == ".gltf" || extension == ".glb" || extension == ".fbx") && fs::is_regular_file(input, error);
+}
+
+AnimationFrames animationFrames(const Settings& settings) {
+  constexpr double kMostFrames = 10000;
+  const fs::path& file = settings.source.input;
+  ReadSettings first = settings.source.read;
+  first.moment = {settings.sequence.animation, 0};
+  Warnings again;  // come again with the frames
+  const auto read = [&] { return readMesh(file, first, again).animation_seconds; };
+  const double seconds = namingFile(file.string(), [&] { return inStage("reading this sculpt", "use one with fewer vertices", read); });
+  AnimationFrames animation{{}, settings.sequence.frames_per_second.value_or(kFramesPerSecond)};
+  const double count = settings.sequence.frames ? *settings.sequence.frames : std::round(seconds * animation.frames_per_second) + 1;
+  if (count < 2 || count > kMostFrames)
+    throw UsageError(
+        fmt::format("{}: its animation of {:.4g} seconds has {:.0f} frames, and 2 to {:.0f} are possible: give another --fps, or "
+                    "--frame-count",
+                    file.string(), seconds, count, kMostFrames));
+  if (settings.sequence.frames && !settings.sequence.frames_per_second) animation.frames_per_second = (count - 1) / seconds;
+  for (int i = 0; i < int(count); ++i) {
+    const double at = settings.sequence.frames ? seconds * i / (count - 1) : i / animation.frames_per_second;
+    animation.frames.push_back(
+        {double(i), fmt::format("{}, frame {}", file.string(), i), file, {}, AnimationMoment{settings.sequence.animation, at}});
+  }
+  return animation;
+}
+
 std::vector<Given> withRecipe(const GrownSource& source, std::span<const Given> line) {
   std::vector<Given> given = source.given;
   for (const Given& one : source.of_sequence)
@@ -155,7 +188,7 @@ std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const Grow
   if (settings.varied.empty())
     throw UsageError(
         "this cloud does not change: give --vary OPTION=A:B, such as size=0.5:1, or take sprouting, fairweather or stormtower");
-  const int steps = settings.frames - 1, fade = settings.loops ? std::min(settings.fade, steps / 2) : 0;
+  const int steps = settings.frames.value_or(kGrownFrames) - 1, fade = settings.loops ? std::min(settings.fade, steps / 2) : 0;
   std::vector<FrameInput> frames;
   for (int i = 0; i <= steps; ++i) {
     FrameInput frame{double(i), fmt::format("{}, frame {}", source.file, i), {}, {}};
@@ -179,6 +212,32 @@ std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const Grow
   return frames;
 }
 
+namespace {
+
+// Reads a frame. Errors of its file name the frame, which may be a moment of that file.
+template <class Read>
+Cloud namingFrame(const FrameInput& frame, const Read& read) {
+  const std::string file = frame.file.string();
+  try {
+    return read();
+  } catch (const MemoryError& error) {
+    if (error.file != file) throw;
+    throw MemoryError(frame.name, error.message);
+  } catch (const InputError& error) {
+    if (error.file != file) throw;
+    throw InputError(frame.name, error.line, error.column, error.message);
+  }
+}
+
+}  // namespace
+
+std::vector<FrameInput> madeFrames(Settings& settings, const std::optional<GrownSource>& source) {
+  if (source) return grownFrames(settings.sequence, *source);
+  AnimationFrames animation = animationFrames(settings);
+  settings.sequence.frames_per_second = animation.frames_per_second;
+  return std::move(animation.frames);
+}
+
 FrameCloud readFrame(const FrameInput& frame, const Settings& settings, std::span<const Given> given, BakeReport& report) {
   Stopwatch watch;
   if (frame.file.empty()) {
@@ -191,8 +250,9 @@ FrameCloud readFrame(const FrameInput& frame, const Settings& settings, std::spa
   }
   Settings own = settings;
   own.source.input = frame.file;
+  own.source.read.moment = frame.moment;
   own.mesh.vertices.reset();
-  return {readCloud(own, report, watch), own.field};
+  return {namingFrame(frame, [&] { return readCloud(own, report, watch); }), own.field};
 }
 
 }  // namespace cloudbake

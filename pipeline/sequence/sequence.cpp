@@ -53,7 +53,7 @@ BakedSequence bakeSequence(const std::vector<FrameInput>& frames, const Settings
   tellEvents(followed, frames, baked.events);
   CloudSequence& sequence = baked.sequence;
   sequence.info = followed.info;
-  sequence.frames_per_second = settings.sequence.frames_per_second;
+  sequence.frames_per_second = settings.sequence.frames_per_second.value_or(kFramesPerSecond);
   sequence.loops = settings.sequence.loops;
   const double last = frames.back().frame;
   sequence.period = sequence.loops ? last - std::min(double(settings.sequence.fade), last / 2) : last;

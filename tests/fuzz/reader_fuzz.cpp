@@ -197,8 +197,11 @@ bool runGltf(const std::string& bytes, std::string& message) {
   ReadSettings settings;
   settings.memory_limit = 64 << 20;
   try {
-    std::string baked_message;
-    succeeds([&] { decodeGlb(file, bytes, warnings, settings); }, baked_message);
+    std::string other_message;
+    succeeds([&] { decodeGlb(file, bytes, warnings, settings); }, other_message);
+    ReadSettings animated = settings;
+    animated.moment = {"", 0.4};
+    succeeds([&] { checkSculpt(readMesh(file, bytes, animated, warnings)); }, other_message);
     return succeeds(
         [&] {
           const Sculpt sculpt = readMesh(file, bytes, settings, warnings);
@@ -410,6 +413,10 @@ std::span<const ReaderTarget> readerTargets() {
                                                     "\"JOINTS_0\":",
                                                     "\"WEIGHTS_0\":",
                                                     "\"inverseBindMatrices\":",
+                                                    "\"animations\":",
+                                                    "\"samplers\":",
+                                                    "\"interpolation\":\"CUBICSPLINE\"",
+                                                    "\"path\":\"weights\"",
                                                     "\"EXT_meshopt_compression\":",
                                                     "\"KHR_draco_mesh_compression\":",
                                                     "\"EXT_mesh_gpu_instancing\":",

@@ -109,7 +109,7 @@ constexpr const char* kTextGltf = R"({"asset":{"version":"2.0"},"nodes":[{"mesh"
                                   "AAACAAEAAAABAAMAAAADAAIAAQACAAMA"
                                   R"("}]})";
 
-// Joints with two influences, two scenes, instances.
+// Joints with two influences, two scenes, instances, and an animation of the joints.
 std::string posedGlb() {
   constexpr const char* kJson = R"({"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[3]},{"nodes":[0,1,4]}],
 "nodes":[{"mesh":0,"skin":0,"scale":[0,0,0]},{"children":[2],"scale":[1,2,-1]},{"rotation":[0,0,0.6,0.8]},{"mesh":0},
@@ -119,7 +119,11 @@ std::string posedGlb() {
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"},
 {"bufferView":0,"byteOffset":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":2,"componentType":5121,"count":4,"type":"VEC4"},
 {"bufferView":3,"componentType":5126,"count":4,"type":"VEC4"},{"bufferView":1,"componentType":5123,"count":4,"type":"SCALAR"},
-{"bufferView":4,"componentType":5126,"count":2,"type":"MAT4"}],
+{"bufferView":4,"componentType":5126,"count":2,"type":"MAT4"},
+{"bufferView":0,"byteOffset":8,"componentType":5126,"count":2,"type":"SCALAR"},{"bufferView":3,"componentType":5126,"count":2,"type":"VEC4"},
+{"bufferView":0,"componentType":5126,"count":2,"type":"VEC3"}],
+"animations":[{"name":"w","channels":[{"sampler":0,"target":{"node":1,"path":"translation"}},
+{"sampler":1,"target":{"node":2,"path":"rotation"}}],"samplers":[{"input":7,"output":9,"interpolation":"STEP"},{"input":7,"output":8}]}],
 "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24},{"buffer":0,"byteOffset":72,"byteLength":16},
 {"buffer":0,"byteOffset":88,"byteLength":64},{"buffer":0,"byteOffset":152,"byteLength":128}],
 "extensionsUsed":["EXT_mesh_gpu_instancing"],"buffers":[{"byteLength":280}]})";

@@ -18,6 +18,7 @@
 #include "io/gltf/document.h"
 #include "io/gltf/named_files.h"
 #include "io/gltf/nodes.h"
+#include "io/gltf/sculpt/animate.h"
 #include "io/gltf/sculpt/budget.h"
 #include "io/gltf/sculpt/buffers.h"
 #include "io/gltf/sculpt/earlier_bake.h"
@@ -163,6 +164,10 @@ std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary
   loaded.model = parseGeometry(file, json, std::move(buffers));
   loaded.bundles = findBundles(loaded.model);
   std::vector<PlacedNode> nodes = walkScene(file, loaded.model, settings.scene_index);
+  if (settings.moment) {
+    loaded.sculpt.animation_seconds = poseByAnimation(file, *settings.moment, nodes, json, loaded.model, warnings);
+    nodes = walkScene(file, loaded.model, settings.scene_index);
+  }
   const std::vector<uint64_t> instance_counts = instanceCounts(json);
   separateVertices(file, drawsOf(loaded.model, nodes, instance_counts), settings.memory_limit, loaded);
   checkBudget(file, loaded.model, loaded.bundles, nodes, instance_counts, settings.memory_limit);
@@ -243,8 +248,15 @@ std::string fixedBecause(const tinygltf::Model& model, const tinygltf::Primitive
 // Reads the parts of one file.
 class PartReader {
  public:
-  PartReader(const fs::path& file, const std::vector<PlacedNode>& nodes, LoadedGltf& loaded, Warnings& warnings)
-      : file_(file), nodes_(nodes), loaded_(loaded), model_(loaded.model), warnings_(warnings), poser_(file, loaded.model, nodes) {}
+  // `is_animated`: the nodes have been posed by an animation.
+  PartReader(const fs::path& file, const std::vector<PlacedNode>& nodes, bool is_animated, LoadedGltf& loaded, Warnings& warnings)
+      : file_(file),
+        nodes_(nodes),
+        is_animated_(is_animated),
+        loaded_(loaded),
+        model_(loaded.model),
+        warnings_(warnings),
+        poser_(file, loaded.model, nodes) {}
 
   // Reads what the visible nodes of the scene draw. Parts under a scale of 0 are left out, unless there are no others.
   void read() {
@@ -307,7 +319,8 @@ class PartReader {
   // Counts what is not baked as an animation would show it.
   void countPose(const PlacedNode& placed, const tinygltf::Primitive& primitive) {
     const std::string owner = file_.string() + ": " + nodeLabel(model_, placed.node);
-    if (!primitive.targets.empty()) warnings_.add(WarningKind::kPoseIgnored, owner + " has morph targets; the file's weights are baked");
+    if (!primitive.targets.empty() && !is_animated_)
+      warnings_.add(WarningKind::kPoseIgnored, owner + " has morph targets; the file's weights are baked");
     if (model_.nodes[size_t(placed.node)].skin >= 0 && !primitive.attributes.contains("JOINTS_0"))
       warnings_.add(WarningKind::kPoseIgnored, owner + " has a skin, but its mesh has no joints; it is baked where the node places it");
   }
@@ -378,6 +391,7 @@ class PartReader {
 
   const fs::path& file_;
   const std::vector<PlacedNode>& nodes_;
+  bool is_animated_;
   LoadedGltf& loaded_;
   const tinygltf::Model& model_;
   Warnings& warnings_;
@@ -402,7 +416,7 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
     checkValueTypes(file, document.json);
     checkExtensions(file, document.json);
     nodes = plainNodes(file, chunks.binary, settings, loaded, warnings);
-    if (document.json.contains("animations"))
+    if (document.json.contains("animations") && !settings.moment)
       warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations; the default pose is baked",
                    document.json["animations"].size());
   } catch (const Json::exception& error) {
@@ -410,7 +424,7 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   }
   countOtherScenes(file, loaded.model, nodes, warnings);
   if (settings.scene_index) document.json["scene"] = *settings.scene_index;
-  PartReader(file, nodes, loaded, warnings).read();
+  PartReader(file, nodes, settings.moment.has_value(), loaded, warnings).read();
   loaded.sculpt.gltf = loaded.document;
   return loaded;
 }

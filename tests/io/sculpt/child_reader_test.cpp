@@ -134,6 +134,14 @@ TEST(ChildReader, GivesWhatThisProcessWouldRead) {
     }
 }
 
+// The moment of an animation is passed on too.
+TEST(ChildReader, KnowsTheAnimation) {
+  ReadSettings settings{.child_program = kSelf};
+  settings.moment = {"a name", 0.5};
+  Warnings warnings;
+  expectError<InputError>([&] { readMesh(kFbx, settings, warnings); }, "it has no animation");
+}
+
 // An answer is taken if it comes from the same version, and is neither cut off nor longer than its contents.
 TEST(ChildReader, AnAnswerIsWhole) {
   const std::string sculpt = readFileBytes(kFbx);

@@ -292,11 +292,11 @@ TEST(Resolve, ASceneIsInPlaceOfAnAsset) {
 }
 
 TEST(Resolve, OptionsThatMeanNothingToTheSource) {
-  const std::set<std::string> of_sculpts{"remesh",  "refine",        "repair",      "close", "separate",
-                                         "inspect", "allow-outside", "scene-index", "units", "up"},
-      of_volumes{"grid", "iso"}, of_grown{"blend", "flat-base",  "base-softness", "base-bumps", "base-bump-size",
-                                          "noise", "noise-size", "noise-octaves", "vary",       "frame-count"},
-      no_volume{"voxels", "voxel-size"};
+  const std::set<std::string> of_sculpts{"remesh",        "refine",      "repair", "close", "separate", "inspect",
+                                         "allow-outside", "scene-index", "units",  "up",    "animation"},
+      of_volumes{"grid", "iso"},
+      of_grown{"blend", "flat-base", "base-softness", "base-bumps", "base-bump-size", "noise", "noise-size", "noise-octaves", "vary"},
+      no_volume{"voxels", "voxel-size", "frame-count"};
   const auto means = [&](const Option& option, SourceKind kind) {
     const bool grown = isGrown(kind), of_rules = std::string_view(option.group).find("as the recipe says") != std::string_view::npos;
     if (of_sculpts.contains(option.name)) return kind == SourceKind::kSculpt;

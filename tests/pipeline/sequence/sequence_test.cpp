@@ -11,6 +11,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/sequence/sequence_file.h"
 #include "pipeline/sequence/choose_keys.h"
+#include "tests/io/gltf/gltf_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 
@@ -52,6 +53,36 @@ class SequenceTest : public testing::Test {
     BakeReport report;
     Stopwatch watch;
     return bakeSequence(frames, resolve(sourceOf(SourceKind::kSculpt, frames.front().file), given), given, report, watch);
+  }
+
+  // A ball of radius 1 whose morph target makes it twice as large, and the keys of the target's weight.
+  void writeBall(const std::vector<float>& times, const std::vector<float>& weights) const {
+    GltfBuilder gltf;
+    const SurfaceMesh ball = ballMesh(1, 4);
+    const int positions = gltf.accessor(ball.positions, 5126, "VEC3", ball.positions.size());
+    const int indices = gltf.accessor(ball.triangles, 5125, "SCALAR", 3 * ball.triangles.size(), 34963);
+    gltf.mesh({{{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"targets", {{{"POSITION", positions}}}}}});
+    gltf.node({{"mesh", 0}});
+    gltf.json["scenes"].push_back({{"nodes", {0}}});
+    const int input = gltf.accessor(times, 5126, "SCALAR", times.size(), 0);
+    const int output = gltf.accessor(weights, 5126, "SCALAR", weights.size(), 0);
+    gltf.json["animations"] = Json::array({{{"name", "Grow"},
+                                            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}},
+                                            {"samplers", {{{"input", input}, {"output", output}}}}}});
+    writeFileAtomically(file("ball.glb"), gltf.glb());
+  }
+  AnimationFrames animation(const std::vector<std::string>& texts = {}) const {
+    return animationFrames(resolve(sourceOf(SourceKind::kSculpt, file("ball.glb")), options(texts, kSequence)));
+  }
+  BakedSequence bakedAnimation(std::vector<std::string> texts = {}) const {
+    for (const char* text : {"vertices=400", "voxels=40", "pixels=64", "rays=32", "lobe=mean"}) texts.emplace_back(text);
+    const std::vector<Given> given = options(texts, kSequence);
+    Settings settings = resolve(sourceOf(SourceKind::kSculpt, file("ball.glb")), given);
+    const AnimationFrames animation = animationFrames(settings);
+    settings.sequence.frames_per_second = animation.frames_per_second;
+    BakeReport report;
+    Stopwatch watch;
+    return bakeSequence(animation.frames, settings, given, report, watch);
   }
 
   TestFolder folder_;
@@ -197,6 +228,57 @@ TEST_F(SequenceTest, LoopsFadeTheirEnd) {
   EXPECT_TRUE(sequence.sequence.loops);
   EXPECT_EQ(sequence.sequence.period, 5);
   EXPECT_EQ(seenAt(sequence.sequence, 6.0 / 24).size(), 2U);
+}
+
+TEST_F(SequenceTest, AnAnimationHasAFramePerMoment) {
+  writeBall({1, 2, 3}, {0, 0.5F, 1});
+  EXPECT_TRUE(mayBeAnimated(file("ball.glb")));
+  EXPECT_FALSE(mayBeAnimated(file("missing.glb")));
+  EXPECT_FALSE(mayBeAnimated(file("cache")));
+  const AnimationFrames usual = animation();
+  ASSERT_EQ(usual.frames.size(), 49U);
+  EXPECT_EQ(usual.frames_per_second, 24);
+  EXPECT_EQ(usual.frames[12].moment->seconds, 0.5);
+  EXPECT_EQ(usual.frames[12].frame, 12);
+  EXPECT_EQ(usual.frames[12].name, file("ball.glb").string() + ", frame 12");
+  EXPECT_EQ(animation({"fps=10"}).frames.size(), 21U);
+  const AnimationFrames five = animation({"frame-count=5"});
+  ASSERT_EQ(five.frames.size(), 5U);
+  EXPECT_EQ(five.frames[3].moment->seconds, 1.5);
+  EXPECT_EQ(five.frames_per_second, 2) << "it takes as long as the animation";
+  EXPECT_EQ(animation({"frame-count=5", "fps=8"}).frames_per_second, 8) << "it is shown faster";
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { animation({"fps=0.1"}); }), "ball.glb: its animation of 2 seconds has 1 frames"));
+  EXPECT_TRUE(contains(refusalOf<InputError>([&] { animation({"animation=Walk"}); }), "has no animation 'Walk'"));
+  writeBall({0, 1e6F}, {0, 1});
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { animation(); }), "has 24000001 frames, and 2 to 10000 are possible"));
+}
+
+// Its radius is 1 + the weight.
+TEST_F(SequenceTest, AMorphingBallIsFollowed) {
+  writeBall({0, 0.25F}, {0, 1});
+  const BakedSequence first = bakedAnimation(), second = bakedAnimation();
+  ASSERT_EQ(first.sequence.segments.size(), 1U);
+  EXPECT_EQ(first.frames.size(), 7U);
+  EXPECT_EQ(first.frames[3].name, file("ball.glb").string() + ", frame 3");
+  for (const SequenceKey& key : first.sequence.segments.front().keys) {
+    const float radius = 1 + float(key.frame) / 6;
+    for (size_t v = 0; v < key.positions.size(); ++v) {
+      EXPECT_NEAR(length(key.positions[v]), radius, 0.03F * radius);
+      EXPECT_NEAR(key.lobes[v].thickness, 2 * radius, 0.15F * radius);
+    }
+  }
+  const auto keptOf = [](const BakedSequence& sequence) {
+    return std::count_if(sequence.frames.begin(), sequence.frames.end(), [](const FrameFigures& frame) { return frame.was_kept; });
+  };
+  EXPECT_EQ(keptOf(first), 0);
+  EXPECT_EQ(keptOf(second), 7);
+  EXPECT_EQ(encodeSequence(first.sequence, SequenceForm::kMorph), encodeSequence(second.sequence, SequenceForm::kMorph));
+  EXPECT_LE(keptOf(bakedAnimation({"fps=48"})), 1) << "frames at other times are others";
+}
+
+TEST_F(SequenceTest, NamesTheMomentThatCannotBeRead) {
+  writeBall({0, 0.25F, 0.375F}, {0, 1, 3e38F});
+  EXPECT_TRUE(contains(refusalOf<InputError>([&] { bakedAnimation(); }), "ball.glb, frame 9: "));
 }
 
 TEST_F(SequenceTest, NamesTheFrameThatCannotBeFollowed) {
