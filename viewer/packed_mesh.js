@@ -1,6 +1,8 @@
 // Vertices and triangles as the program packed them: pipeline/page/packed_mesh.h. Arrays follow one another, each by planes: the first
 // bytes of all values, then the second ones, and so on.
 
+import { emptyKey } from '../engines/npm/sequence.js';
+import { readySequence } from './sequences.js';
 import { normalize } from './vectors.js';
 
 // Triangles in the fewest bytes. 65535 is no vertex in 16 bits: there WebGL2 ends a strip.
@@ -11,6 +13,14 @@ async function inflated(base64) {
   writer.write(Uint8Array.from(atob(base64), c => c.charCodeAt(0)));
   writer.close();
   return new Uint8Array(await new Response(readable).arrayBuffer());
+}
+
+// A direction on the faces of an octahedron, unfolded to a square of so many steps.
+function directionOf(across, along, steps) {
+  let [x, y] = [2 * across / steps - 1, 2 * along / steps - 1];
+  const z = 1 - Math.abs(x) - Math.abs(y);
+  if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
+  return normalize([x, y, z]);
 }
 
 class MeshReader {
@@ -36,12 +46,7 @@ class MeshReader {
 
   takeDirections(steps, stride) {
     const { vertices } = this, values = this.takeWhole(2 * vertices, 2), directions = new Float32Array(stride * vertices);
-    for (let v = 0; v < vertices; ++v) {
-      let [x, y] = [2 * values[2 * v] / steps - 1, 2 * values[2 * v + 1] / steps - 1];
-      const z = 1 - Math.abs(x) - Math.abs(y);
-      if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
-      directions.set(normalize([x, y, z]), stride * v);
-    }
+    for (let v = 0; v < vertices; ++v) directions.set(directionOf(values[2 * v], values[2 * v + 1], steps), stride * v);
     return directions;
   }
 
@@ -63,14 +68,42 @@ class MeshReader {
   }
 }
 
+// The triangles and the keys of a segment: pipeline/page/packed_sequence.h.
+function takeSegment(reader, { frames, vertices, corners }, { box: [low, high], density_max }) {
+  const count = frames.length, last = 65535, triangles = reader.takeWhole(corners, 1);
+  const positions = reader.takeWhole(3 * count * vertices, 3 * vertices), roots = reader.takeWhole(count * vertices, vertices);
+  const directions = reader.takeWhole(4 * count * vertices, 4 * vertices);
+  const keys = frames.map((_, k) => {
+    const key = emptyKey(vertices);
+    for (let v = 0; v < vertices; ++v) {
+      const i = k * vertices + v, [lobe_u, lobe_v, normal_u, normal_v] = directions.subarray(4 * i, 4 * i + 4);
+      for (let axis = 0; axis < 3; ++axis)
+        key.positions[3 * v + axis] = low[axis] + (high[axis] - low[axis]) * positions[3 * i + axis] / last;
+      const [x, y, z] = directionOf(lobe_u, lobe_v, 255);
+      key.normals.set(directionOf(normal_u, normal_v, 255), 3 * v);
+      key.first.set([x, y], 2 * v);
+      key.second.set([z, density_max * (roots[i] / last) ** 2], 2 * v);
+    }
+    return key;
+  });
+  return { triangles, keys };
+}
+
+function takeSequence(reader, packed) {
+  const { frames_per_second: framesPerSecond, segments } = packed;
+  return readySequence({ ...packed, framesPerSecond }, segments.map(segment => takeSegment(reader, segment, packed)));
+}
+
 const sum = (parts, key) => parts.reduce((all, part) => all + part[key], 0);
 
-// The arrays of all parts, from those of the stored ones: the others are copies, turned, moved and scaled.
-function withCopies(parts, stored, { positions, normals, lobes, colors, triangles }) {
-  if (stored.length === parts.length) return { positions, normals, lobes, colors, triangles };
+// The arrays of all parts, from those of the stored ones: the others are copies, turned, moved and scaled, or have room for clouds that
+// change.
+function withCopies(parts, stored, { positions, normals, lobes, colors, harmonics, harmonicsPerVertex, triangles }) {
+  if (stored.length === parts.length) return { positions, normals, lobes, colors, harmonics, triangles };
   const vertices = sum(parts, 'vertices'), all = {
     positions: new Float32Array(3 * vertices), normals: new Float32Array(3 * vertices), lobes: new Float32Array(4 * vertices),
-    colors: new Float32Array(colors.length && 3 * vertices), triangles: new Uint32Array(sum(parts, 'count')),
+    colors: new Float32Array(colors.length && 3 * vertices).fill(1), harmonics: new Float32Array(harmonicsPerVertex * vertices),
+    triangles: new Uint32Array(sum(parts, 'count')),
   };
   const from = new Map();
   let vertex = 0, index = 0;
@@ -78,7 +111,7 @@ function withCopies(parts, stored, { positions, normals, lobes, colors, triangle
     from.set(part, { vertex, index });
     vertex += part.vertices, index += part.count;
   }
-  for (const part of parts) {
+  for (const part of parts.filter(({ sequence }) => !sequence)) {
     const source = part.copy ? parts[part.copy.of] : part, by = part.copy?.by ?? [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
     const at = from.get(source), scale = Math.hypot(by[0], by[1], by[2]);
     // Turns the vectors of an array, each at the start of `stride` numbers.
@@ -93,6 +126,8 @@ function withCopies(parts, stored, { positions, normals, lobes, colors, triangle
     turn(normals, all.normals, 3, 1 / scale, [0, 0, 0]);
     turn(lobes, all.lobes, 4, 1 / scale, [0, 0, 0]);
     for (let v = 0; v < part.vertices; ++v) all.lobes[4 * (part.first_vertex + v) + 3] = scale * lobes[4 * (at.vertex + v) + 3];
+    const [begin, end] = [at.vertex, at.vertex + part.vertices].map(v => harmonicsPerVertex * v);
+    all.harmonics.set(harmonics.subarray(begin, end), harmonicsPerVertex * part.first_vertex);
     if (colors.length) all.colors.set(colors.subarray(3 * at.vertex, 3 * (at.vertex + part.vertices)), 3 * part.first_vertex);
     for (let i = 0; i < part.count; ++i)
       all.triangles[part.first + i] = triangles[at.index + i] - source.first_vertex + part.first_vertex;
@@ -113,8 +148,8 @@ function takeLayers(reader, { moon_picture, lattices }) {
 
 /** @param {Scene | ScatteredClouds} scene @returns {Promise<Arrays>} */
 export async function unpackMesh({ mesh, parts }) {
-  const { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, impostors = [], layers, data } = mesh;
-  const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
+  const { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, impostors = [], sequences = [], layers, data } = mesh;
+  const stored = parts.filter(part => !part.copy && !part.sequence), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {
     positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),
     lobes: reader.takeLobes(lobes), compared: reader.takeLobes(compared),
@@ -122,7 +157,9 @@ export async function unpackMesh({ mesh, parts }) {
     harmonics: reader.take(Float32Array, harmonics * reader.vertices), harmonicsPerVertex: harmonics,
     triangles: reader.takeWhole(sum(stored, 'count'), 1), fields: fields.map(cells => reader.take(Uint8Array, cells)),
     impostors: impostors.map(bytes => ({ lobe: reader.take(Uint8Array, bytes), rest: reader.take(Uint8Array, bytes) })),
+    sequences: sequences.map(packed => takeSequence(reader, packed)),
   };
+  for (const part of parts) if (part.sequence) part.room = part.count;
   const of_layers = layers && takeLayers(reader, layers), all = withCopies(parts, stored, own);
   return { ...own, ...all, layers: of_layers, triangles: packedTriangles(all.triangles, vertices) };
 }
