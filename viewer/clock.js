@@ -68,7 +68,7 @@ export class Clock {
     const seconds = loops && duration > 0 ? time % duration : Math.min(time, duration);
     slider.value = Math.round(seconds * framesPerSecond);
     slider.ariaValueText = `Frame ${slider.value} of ${Math.round(period)}, ${seconds.toFixed(2)} seconds`;
-    element('frame-time').textContent = `${seconds.toFixed(2)} / ${duration.toFixed(2)} s`;
+    element('frame-time').textContent = `${seconds.toFixed(2)} s`;
   }
 }
 
