@@ -7,7 +7,8 @@ const CURE = 'take the file that `cloudbake sequence` wrote.';
 
 /** The bytes of the picture that has the keys. @param {import('./glb.js').GlbReader} reader */
 function keyPicture({ json, buffer, binary }) {
-  const image = json.images?.find(({ name }) => name === 'keys'), { byteOffset = 0, byteLength } = json.bufferViews?.[image?.bufferView] ?? {};
+  const image = json.images?.find(({ name }) => name === 'keys');
+  const { byteOffset = 0, byteLength } = json.bufferViews?.[image?.bufferView] ?? {};
   if (!(byteLength > 0)) throw new Error(`The sequence has lost the picture of its keys: ${CURE}`);
   return new Uint8Array(buffer.slice(binary + byteOffset, binary + byteOffset + byteLength));
 }
@@ -17,8 +18,8 @@ function readSegment(reader, { mesh, frames, firstRow }, sequence, picture) {
   if (!primitive) throw new Error(`A segment of the sequence has no mesh: ${CURE}`);
   if (!picture && targets.length !== frames.length - 1) throw new Error(`A key of the sequence has no morph target: ${CURE}`);
   const keyOf = attributes => {
-    const [positions, normals, first, second] = ['POSITION', 'NORMAL', 'TEXCOORD_0', 'TEXCOORD_1'].map(set => reader.read(attributes[set], set));
-    return { positions, normals, first, second };
+    const numbers = set => reader.read(attributes[set], set);
+    return { positions: numbers('POSITION'), normals: numbers('NORMAL'), first: numbers('TEXCOORD_0'), second: numbers('TEXCOORD_1') };
   };
   const base = keyOf(primitive.attributes), triangles = reader.read(primitive.indices, 'triangles'), vertices = base.positions.length / 3;
   if (!triangles.every(v => v < vertices)) throw new Error('The GLB is damaged: a triangle uses a vertex that does not exist.');

@@ -20,7 +20,8 @@ export const durationOf = ({ period, framesPerSecond }) => period / framesPerSec
  * @param {Scene} scene @param {number} seconds @returns {FadedPicture[]}
  */
 export function picturesAt(scene, seconds) {
-  const all = changing(scene).flatMap(({ arrays }) => arrays.sequences).map(sequence => ({ sequence, segments: seenAt(sequence, seconds) }));
+  const sequences = changing(scene).flatMap(({ arrays }) => arrays.sequences);
+  const all = sequences.map(sequence => ({ sequence, segments: seenAt(sequence, seconds) }));
   const shares = new Set(all.filter(({ segments }) => segments.length > 1).map(({ segments: [{ weight }] }) => weight));
   let pictures = [{ weight: 1, seen: new Map() }];
   for (const { sequence, segments } of all) pictures[0].seen.set(sequence, segments.at(-1));
