@@ -100,7 +100,10 @@ export function showCasters(scene, { seen }) {
   for (const { arrays, parts, casters } of changing(scene))
     for (const { sequence, caster } of parts) {
       if (!sequence || caster === undefined) continue;
-      const one = arrays.sequences[sequence.of], { triangles, key: { positions } } = meshAt(one, seen.get(one));
+      const one = arrays.sequences[sequence.of], key = JSON.stringify(seen.get(one)), shaded = arrays.shaded ??= {};
+      if (key === shaded[caster]) continue;
+      shaded[caster] = key;
+      const { triangles, key: { positions } } = meshAt(one, seen.get(one));
       const part = { first: 0, count: triangles.length, first_vertex: 0, vertices: positions.length / 3 };
       const { origin, cell_size, cells, fractions } = new VolumeField(new InsideLengths({ positions, triangles }, part), CASTER_CELLS);
       casters[caster] = { origin, cell_size, cells: /** @type {[number, number, number]} */ (cells) };

@@ -55,6 +55,7 @@ interface Arrays {
   impostors?: { lobe: Uint8Array; rest: Uint8Array }[];  // three bytes per pixel of the atlas
   sequences?: CloudSequence[];
   shown?: string;  // which meshes of them
+  shaded?: Record<number, string>;  // which of them cast the shadow of a caster
   layers?: { moon?: { width: number; height: number; bytes: Uint8Array }; lattices: Lattice[] };
 }
 
