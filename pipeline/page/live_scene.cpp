@@ -632,7 +632,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const SunTable suns = sunTable(scenery);
   const std::vector<Instance> instances = instancesAt(scenery, file.view);
   Meshes meshes = meshesOf(scenery.instances, scenery);
-  if (meshes.triangles.empty() && meshes.impostors.empty() && scenery.fields.empty() && !isLayered(file))
+  if (meshes.triangles.empty() && meshes.impostors.empty() && meshes.sequences.empty() && scenery.fields.empty() && !isLayered(file))
     throw UsageError("view needs a cloud with triangles, or another layer");
 
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};

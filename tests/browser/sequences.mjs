@@ -14,6 +14,11 @@ const WORDS = ['humilis', '--vary', 'size=0.5:0.8', '--frame-count', '8', '--ver
 const NEAR = 0.99, CONTROL = 0.98;
 
 const sequenceOf = name => chunksOf(readFileSync(join(folder, name))).json.asset.extras.cloudbake.sequence;
+// The first and the last frame of the last fade, and the last frame of all.
+function fadeOf(name) {
+  const [earlier, later] = sequenceOf(name).segments.slice(-2).map(({ frames }) => frames);
+  return [later[0], earlier.at(-1), later.at(-1)];
+}
 const stateOf = page => page.evaluate(() => {
   const { clock, drawing, scene } = window.viewer;
   const [play, slider, output] = ['play-frames', 'frame', 'frame-time'].map(id => document.getElementById(id));
@@ -48,15 +53,13 @@ async function pictureAt(page, seconds) {
 }
 
 // The page at four times, of which two are in fades, beside preview.
-async function pictures(page, name, look, words) {
-  const { segments } = sequenceOf(name), ends = segments.map(({ frames: all }) => [all[0], all.at(-1)]);
-  demand(ends.length >= 2 && ends[1][0] < ends[0][1], `the sequence fades: ${JSON.stringify(ends)}`);
-  const fade = ends[1][0], length = ends[0][1] - fade, last = ends.at(-1)[1];
+async function pictures(page, name, look) {
+  const [begin, end, last] = fadeOf(name), length = end - begin, words = [name, '--look', look];
   run('view', ...words, '-o', 'page.html');
-  await open(page, 'page.html', `${bare}&look=${look}`);
-  for (const [frame, count] of [[0.4, 1], [fade + length / 4, 2], [fade + 0.5 * length, 2], [last - 0.75, 1]]) {
+  await open(page, 'page.html', bare);
+  for (const [frame, count] of [[begin - 1.6, 1], [begin + length / 4, 2], [begin + length / 2, 2], [last - 0.75, 1]]) {
     const seconds = frame / FPS, values = await pictureAt(page, seconds);
-    const truth = await previewOf(page, [...words, '--look', look], seconds), state = await stateOf(page);
+    const truth = await previewOf(page, words, seconds), state = await stateOf(page);
     const without = await emptied(page);
     const { all, own, pixels } = shares(values, truth, without);
     demand(state.pictures.length === count && all >= NEAR && own >= NEAR && pixels > 3000,
@@ -188,6 +191,8 @@ async function lights(page) {
   }
   demand(rms(exact[1], lobe) < 0.5 * rms(exact[0], lobe), 'exact light follows the mesh');
   await open(page, 'page.html', 'size=360x240');
+  await page.fill('#frame', '2');
+  await settled(page);
   const place = await page.evaluate(() => {
     const { viewer, modules: { vertexAt, positionOf, project } } = window, { width, height } = viewer.canvas.getBoundingClientRect();
     const found = vertexAt(viewer, width / 2, height / 2);
@@ -196,7 +201,7 @@ async function lights(page) {
   });
   await settled(page);
   demand(place.found >= 0 && Math.hypot(place.x - place.middle[0], place.y - place.middle[1]) < 12, 'vertices are where they are seen');
-  await page.fill('#frame', '1');
+  await page.fill('#frame', '3');
   await settled(page);
   const same = await page.evaluate(() => window.viewer.state.vertex);
   await page.fill('#frame', '7');
@@ -207,7 +212,7 @@ async function lights(page) {
 
 // Dropped files of both forms, at a moment of a fade.
 async function dropped(page) {
-  const { segments } = sequenceOf('grows.glb'), seconds = (segments[1].frames[0] + segments[0].frames.at(-1)) / 2 / FPS;
+  const [begin, end] = fadeOf('grows.glb'), seconds = (begin + end) / 2 / FPS;
   run('view', 'grows.glb', '-o', 'page.html');
   await open(page, 'page.html', bare);
   const own = await pictureAt(page, seconds);
@@ -243,8 +248,7 @@ async function inScenes(page) {
   const clouds = ["file = 'grows.glb'\nposition = [-1.2, 0, 0]", "file = 'still.glb'\nposition = [0, -1.2, 0]",
     "file = 'grows.glb'\nposition = [1.2, 0.4, -0.5]\nscale = [-1, 1, 1]\nrotation = [0, 40, 0]"];
   const text = clouds.map(one => `[[cloud]]\n${one}\n`).join('');
-  const { segments } = sequenceOf('grows.glb'), offset = 2 / FPS;
-  const fade = (segments[1].frames[0] + segments[0].frames.at(-1)) / 2 / FPS - offset;
+  const [begin, end] = fadeOf('grows.glb'), offset = 2 / FPS, fade = (begin + end) / 2 / FPS - offset;
   for (const [name, settings] of [['each.toml', `[picture]\ntime_offset = ${offset}`], ['grid.toml', '[light]\ncloud_shade = "grid"']]) {
     writeFileSync(join(folder, name), `${settings}\n${text}`);
     run('view', '--scene', name, '-o', 'page.html');
@@ -284,8 +288,8 @@ async function inWindows(page) {
 run('sequence', ...WORDS, '--as', 'picture', '-o', 'grows.glb');
 run('sequence', ...WORDS, '--as', 'morph', '-o', 'morph.glb');
 await testPage(folder, async page => {
-  for (const look of ['plain', 'painted']) await pictures(page, 'grows.glb', look, ['grows.glb']);
-  await pictures(page, 'morph.glb', 'plain', ['morph.glb']);
+  for (const look of ['plain', 'painted']) await pictures(page, 'grows.glb', look);
+  await pictures(page, 'morph.glb', 'plain');
   console.log(`a page of ${(statSync(join(folder, 'morph.glb')).size / 1000).toFixed(0)} kB as morph targets has ` +
     `${(statSync(join(folder, 'page.html')).size / 1000).toFixed(0)} kB`);
   await controls(page);
