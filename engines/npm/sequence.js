@@ -178,9 +178,9 @@ function unfiltered(rows, height, stride, channels) {
   return bytes;
 }
 
-// The directions of the octahedron's map, by the two bytes of a point: three numbers each.
 let octahedron = null;
-function octahedronOf() {
+/** The directions of the octahedron's map, by the two bytes of a point: three numbers each. @returns {Float32Array} */
+export function octahedronOf() {
   if (octahedron) return octahedron;
   octahedron = new Float32Array(3 * 65536);
   for (let i = 0; i < 65536; ++i) {
