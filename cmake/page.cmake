@@ -4,7 +4,8 @@ find_program(ESBUILD esbuild HINTS ${PROJECT_SOURCE_DIR}/node_modules/.bin NO_CM
 if(NOT ESBUILD)
   message(FATAL_ERROR "esbuild, which joins the scripts of pages, is missing: run scripts/setup, or install Debian's package esbuild")
 endif()
-file(GLOB page_modules CONFIGURE_DEPENDS viewer/*.js viewer/layers/*.js engines/npm/shade_grid.js engines/npm/swept_shadow.js)
+file(GLOB page_modules CONFIGURE_DEPENDS viewer/*.js viewer/layers/*.js engines/npm/shade_grid.js engines/npm/swept_shadow.js
+     engines/npm/sequence.js)
 # Those of every page that shows clouds:
 file(GLOB page_shaders CONFIGURE_DEPENDS shaders/common/*.glsl shaders/functions/*.glsl shaders/painted/*.glsl shaders/plain/*.glsl
      shaders/published/*.glsl)

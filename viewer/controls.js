@@ -32,6 +32,8 @@ export function listenToControls(viewer) {
   onInput('asset', ({ value }) => viewer.choose(+value));
   onClick('reset', () => viewer.reset());
   onClick('play', () => viewer.clock.play(!viewer.clock.plays));
+  onClick('play-frames', () => viewer.clock.play(!viewer.clock.plays));
+  onInput('frame', ({ valueAsNumber }) => viewer.clock.show(valueAsNumber));
   onClick('play-sun', () => viewer.sun.play(!viewer.sun.plays));
   onClick('save', () => savePicture(viewer));
   onClick('close-message', () => tell(''));
@@ -78,6 +80,7 @@ export function showState(viewer) {
 
 /** The numbers beside the sliders. Screen readers have those of the sliders themselves. @param {Viewer} viewer */
 export function showNumbers({ state, scene, clock, sun }) {
+  clock.showFrame();
   const [azimuth, elevation] = state.sun;
   const texts = {
     'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, hour: hourText(sun.hour),

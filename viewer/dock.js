@@ -27,12 +27,12 @@ export function freeBox() {
 
 /** The help of a control under pointer, finger or focus is shown in one line below all panels. */
 export function listenToDock() {
-  const dock = element('dock'), help = element('help');
+  const controls = element('controls'), help = element('help');
   const general = matchMedia('(pointer: coarse)').matches ? help.dataset.touch : help.textContent;
   help.textContent = general;
   const show = part => { help.textContent = helpOf(part) ?? general; };
-  for (const name of ['pointerover', 'pointerdown', 'focusin']) dock.addEventListener(name, event => show(event.target));
-  for (const name of ['pointerleave', 'focusout']) dock.addEventListener(name, () => show(document.activeElement));
+  for (const name of ['pointerover', 'pointerdown', 'focusin']) controls.addEventListener(name, event => show(event.target));
+  for (const name of ['pointerleave', 'focusout']) controls.addEventListener(name, () => show(document.activeElement));
   addEventListener('keydown', ({ key }) => {
     if (key !== 'Escape') return;
     const panel = document.activeElement.closest('#dock > [open]');

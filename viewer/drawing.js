@@ -5,6 +5,8 @@ import { LARGEST_SIZE } from './address.js';
 import { element, fail, setPageState } from './dom.js';
 import { Gpu } from './gpu.js';
 import { Renderer } from './renderer.js';
+import { picturesAt, showCasters, showMeshes } from './sequences.js';
+import { isVertex } from './state.js';
 import { clamp } from './vectors.js';
 
 const FRAME_MILLISECONDS = 40;  // that a step of a picture should take
@@ -19,6 +21,9 @@ export class Drawing {
     this.chunks = { first: 1, next: 1 };  // samples in the first step of a picture, which has more to do, and in the next ones
     this.isDraft = false;
     this.frame = 0;
+    /** Those that are blended while a cloud changes its mesh, and the number of the one that is drawn. @type {FadedPicture[]} */
+    this.pictures = [];
+    this.picture = 0;
     this.begin();
   }
 
@@ -31,6 +36,7 @@ export class Drawing {
   /** @param {Scene} scene */
   useScene(scene) {
     this.renderer.setScene(scene);
+    this.segments = undefined;
     this.sheet = scene.layers?.is_sheet ? new this.viewer.layering.TechniqueSheet(scene) : null;
     element('sheet').hidden = !this.sheet;
   }
@@ -63,7 +69,7 @@ export class Drawing {
     const figures = [`${samples} of ${all} samples`, `${(performance.now() - begin).toFixed(0)} ms`, `${(1000 / between).toFixed(0)} fps`];
     element('figures').textContent = [`${width} × ${height}`, ...figures].join(', ');
     const is_final = renderer.complete && !this.isDraft && !viewer.moves && !viewer.light.isNeeded && !viewer.volume.isNeeded;
-    viewer.showStep(is_final);
+    if (this.isLast) viewer.showStep(is_final);
     if (is_final) setPageState('ready');
     else this.frame ||= requestAnimationFrame(next => this.draw(next));
   }
@@ -77,13 +83,35 @@ export class Drawing {
 
   drawSampledStep(is_first) {
     const { renderer, chunks } = this, begin = performance.now(), step = is_first ? 'first' : 'next';
-    if (is_first) this.startPicture();
+    if (is_first || this.isDraft) this.startPicture();
     const before = renderer.samples;
-    renderer.drawSamples(chunks[step]);
-    if (is_first || renderer.complete) renderer.show();
+    if (is_first) this.showSoon(chunks.first);
+    else renderer.drawSamples(chunks.next);
+    const drawn = renderer.samples - before, is_over = renderer.complete;
+    this.isDraft = is_first && !is_over && this.pictures.length > 1;
+    if (!is_first && is_over) this.showPicture();
     renderer.gpu.waitForPicture();
-    if (is_first || !renderer.complete)  // the last step has few samples, and shows them
-      chunks[step] = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / (performance.now() - begin)), 1, 64);
+    if (is_first || !is_over)  // the last step has few samples, and shows them
+      chunks[step] = clamp(Math.round(drawn * FRAME_MILLISECONDS / (performance.now() - begin)), 1, 64);
+  }
+
+  // Shows the picture of so many samples; all of those that are blended.
+  showSoon(samples) {
+    for (let is_last = false; !is_last;) {
+      this.renderer.drawSamples(samples);
+      is_last = this.isLast;
+      this.showPicture();
+    }
+  }
+
+  get isLast() { return this.picture === this.pictures.length - 1; }
+
+  // Shows the picture, or blends it with others and begins the next one.
+  showPicture() {
+    const { renderer, pictures, picture, isLast } = this;
+    if (pictures.length === 1) renderer.show();
+    else renderer.showBlended(pictures[picture].weight, picture, isLast);
+    if (!isLast) this.startMeshes(picture + 1);
   }
 
   // While something moves, a picture of fewer pixels and steps is drawn as a whole; when it rests, the whole picture in pieces, behind it.
@@ -97,8 +125,7 @@ export class Drawing {
     const { renderer } = this, begin = performance.now();
     this.startPicture(divisor);
     this.isDraft = true;
-    renderer.drawSamples(1);
-    renderer.show();
+    this.showSoon(1);
     renderer.gpu.waitForPicture();
     const share = (performance.now() - begin) / target;
     return share > 1.1 || share < 0.7 ? clamp(divisor * clamp(Math.sqrt(share / 0.9), 0.5, 2), 1, 8) : divisor;
@@ -115,7 +142,7 @@ export class Drawing {
       renderer.gpu.waitForPicture();
       renderer.layers.took(performance.now() - before, target / 2);
     }
-    if (renderer.complete) renderer.show();
+    if (renderer.complete) this.showPicture();
   }
 
   // Draws the whole picture at once, and returns the canvas that has it.
@@ -127,21 +154,48 @@ export class Drawing {
       return sheet.joined();
     }
     this.startPicture();
-    while (!renderer.complete) renderer.advance(this.viewer.look.samples.length);
-    renderer.show();
+    for (let is_last = false; !is_last;) {
+      while (!renderer.complete) renderer.advance(this.viewer.look.samples.length);
+      is_last = this.isLast;
+      this.showPicture();
+    }
     return this.canvas;
   }
 
   // Begins the picture, or a draft that is so many times smaller.
   startPicture(divisor = 0) {
-    const { viewer, viewer: { state, clock: { time }, scene: { layers } } } = this;
+    const { viewer: { clock: { time } }, renderer: { scene } } = this;
     this.isStale = false;
     this.resize(divisor || 1);
+    this.fewer = divisor ? 4 : 1;
+    this.pictures = picturesAt(scene, time + (scene.time_offset ?? 0));
+    showCasters(scene, this.pictures.at(-1));
+    this.startMeshes(0);
+  }
+
+  // A vertex stays chosen as long as it is on the same mesh.
+  keepVertex() {
+    const { viewer, viewer: { scene, state }, pictures, segments } = this;
+    this.segments = String([...pictures.at(-1).seen.values()].map(({ segment }) => segment));
+    if (state.vertex < 0 || (this.segments === (segments ?? this.segments) && isVertex(scene, state.vertex))) return;
+    viewer.state = { ...state, vertex: -1 };
+  }
+
+  // Begins one of the pictures with its meshes.
+  startMeshes(picture) {
+    const { viewer, viewer: { state, clock: { time }, scene: { layers } }, renderer, fewer } = this;
+    this.picture = picture;
+    if (showMeshes(renderer.scene, this.pictures[picture])) {
+      renderer.takeMeshes();
+      viewer.light.forget();
+      viewer.volume.forget();
+    }
+    if (this.isLast) this.keepVertex();
     viewer.light.computeIfNeeded();
     viewer.volume.computeIfNeeded();
-    this.renderer.volume = viewer.volume.field ? viewer.volume : null;
+    renderer.volume = viewer.volume.field ? viewer.volume : null;
     const cameraAt = layers?.camera_path && (at => viewer.cameraAt(at));
-    this.renderer.start(viewer.look, { ...state, fewer: divisor ? 4 : 1, camera: viewer.cameraAt(time), cameraAt, time });
+    renderer.start(viewer.look, { ...state, fewer, camera: viewer.cameraAt(time), cameraAt, time });
   }
 
   resize(divisor) {

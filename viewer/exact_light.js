@@ -86,6 +86,6 @@ export class ExactLight {
       for (let v = part.first_vertex; v < part.first_vertex + part.vertices; ++v)
         sum += (transmittance(insideByLobe(lobes, v, to_sun, shape)) - transmittance(sunLengths[v])) ** 2;
     }
-    return `T off by ${Math.sqrt(sum / sunLengths.length).toFixed(3)} rms: ${meaning}`;
+    return `T off by ${Math.sqrt(sum / parts.reduce((all, { vertices }) => all + vertices, 0)).toFixed(3)} rms: ${meaning}`;
   }
 }

@@ -2,6 +2,7 @@
 
 import { ownColors, ownMaterials } from './own_colors.js';
 import { packedTriangles } from './packed_mesh.js';
+import { sequenceMesh } from './sequence_glb.js';
 import { add, cross, dot } from './vectors.js';
 
 const COMPONENTS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
@@ -27,7 +28,7 @@ export class GlbReader {
     this.info = this.json.asset?.extras?.cloudbake;
     if (!this.info) throw new Error('This GLB has no lobes: bake it with `cloudbake bake` first.');
     if (this.info.layout === 'lobe-impostor') throw new Error('This GLB is an impostor: open it with `cloudbake view`.');
-    if (!['lobe-uv', 'lobe-packed'].includes(this.info.layout) || this.info.version !== 1)
+    if (!['lobe-uv', 'lobe-packed', 'lobe-sequence'].includes(this.info.layout) || this.info.version !== 1)
       throw new Error('The GLB has lobes of another version of cloudbake: bake it again.');
     const known = ['KHR_mesh_quantization', 'KHR_texture_transform'];
     const unread = (this.json.extensionsRequired ?? []).filter(name => !known.includes(name));
@@ -223,7 +224,8 @@ function readMeshes(reader, constants, materials) {
   if (!meshes.all.triangles.length) throw new Error('The GLB has no triangles.');
   if (!meshes.all.triangles.every(v => v < meshes.vertices))
     throw new Error('The GLB is damaged: a triangle uses a vertex that does not exist.');
-  return meshes;
+  const [low, high] = meshes.box(), { vertices, harmonicsPerVertex } = meshes;
+  return { vertices, corners: meshes.all.triangles.length, low, high, harmonicsPerVertex, arrays: meshes.arrays() };
 }
 
 // What is not a cloud's own in a scene, as a copy that can be changed.
@@ -237,13 +239,14 @@ function settingsOf(scene) {
 
 async function readScene(buffer, name, like, note) {
   const reader = new GlbReader(buffer), constants = constantsOf(reader.info);
-  const meshes = readMeshes(reader, constants, await ownMaterials(reader, note));
-  const [low, high] = meshes.box(), size = add(high, low, -1), longest = Math.max(...size) || 1, { harmonicsPerVertex } = meshes;
+  const mesh = await sequenceMesh(reader) ?? readMeshes(reader, constants, await ownMaterials(reader, note));
+  const { low, high, vertices, corners, harmonicsPerVertex, arrays, ...place } = mesh;
+  const size = add(high, low, -1), longest = Math.max(...size) || 1;
   if (![...low, ...high].every(Number.isFinite)) throw new Error('The GLB is damaged: a position is not finite.');
   const extinction = constants.extinction > 0 ? constants.extinction : like.extinction_times_size / longest;
   const is_of_volume = reader.info.fit_to === 'volume', volume = volumeOf(is_of_volume ? reader.info : {});
   const part = {
-    first: 0, count: meshes.all.triangles.length, first_vertex: 0, vertices: meshes.vertices, lobe: reader.info.lobe ?? 'mean',
+    first: 0, count: corners, first_vertex: 0, vertices, ...place, lobe: reader.info.lobe ?? 'mean',
     shape: [constants.exponent, constants.bias], extinction, is_of_volume, volume,
     ...(harmonicsPerVertex ? { harmonics: { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction, is_of_volume } } : {}),
   };
@@ -253,7 +256,7 @@ async function readScene(buffer, name, like, note) {
     depth_range: [0, like.far_sides * longest], noise: { ...like.noise, origin: [0, 0, 0], longest },
     camera: { ...like.camera, at: add(low, high).map(x => x / 2), distance },
     corners: Array.from({ length: 8 }, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])),
-    arrays: { ...meshes.arrays(), layers: like.arrays?.layers },
+    arrays: { ...arrays, layers: like.arrays?.layers },
   };
 }
 

@@ -19,6 +19,8 @@ export class Gpu {
     /** @type {Record<string, Target>} */
     this.targets = {};
     this.framebuffer = this.gl.createFramebuffer();
+    /** What is drawn to in place of the canvas. @type {Target | null} */
+    this.screen = null;
   }
 
   // A program of `vertex` and `fragment` after the files of functions that they use. `kept`: a result of `vertex` that goes to a buffer.
@@ -86,6 +88,7 @@ export class Gpu {
 
   // From here on everything is drawn to these targets, or to the canvas if there are none.
   drawTo(targets, depth = null) {
+    if (this.screen && !targets.length && !depth) targets = [this.screen];
     const { gl } = this, { width, height } = targets[0] ?? depth ?? this.size;
     if (targets.length || depth) this.attach(targets, depth);
     else this.showCanvas(width, height);

@@ -23,7 +23,11 @@ export function twiceArea(x, y, px, py, a, b) {
 }
 
 export class InsideLengths {
-  /** `part` names its range of `positions` and `triangles`, which are those of all parts. @param {Arrays} arrays @param {Part} part */
+  /**
+   * `part` names its range of `positions` and `triangles`, which are those of all parts.
+   * @param {Pick<Arrays, 'positions' | 'triangles'>} arrays
+   * @param {Pick<Part, 'first' | 'count' | 'first_vertex' | 'vertices'>} part
+   */
   constructor({ positions, triangles }, part) {
     this.positions = positions;
     this.part = part;

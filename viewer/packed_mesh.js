@@ -1,6 +1,8 @@
 // Vertices and triangles as the program packed them: pipeline/page/packed_mesh.h. Arrays follow one another, each by planes: the first
 // bytes of all values, then the second ones, and so on.
 
+import { emptyKey, octahedronOf } from '../engines/npm/sequence.js';
+import { readySequence } from './sequences.js';
 import { normalize } from './vectors.js';
 
 // Triangles in the fewest bytes. 65535 is no vertex in 16 bits: there WebGL2 ends a strip.
@@ -8,7 +10,9 @@ export const packedTriangles = (triangles, vertices) => (vertices <= 65535 ? Uin
 
 async function inflated(base64) {
   const { readable, writable } = new DecompressionStream('deflate'), writer = writable.getWriter();
-  writer.write(Uint8Array.from(atob(base64), c => c.charCodeAt(0)));
+  const text = atob(base64), packed = new Uint8Array(text.length);
+  for (let i = 0; i < packed.length; ++i) packed[i] = text.charCodeAt(i);  // from() would take 20 times as long
+  writer.write(packed);
   writer.close();
   return new Uint8Array(await new Response(readable).arrayBuffer());
 }
@@ -63,14 +67,45 @@ class MeshReader {
   }
 }
 
+// The triangles and the keys of a segment: pipeline/page/packed_sequence.h.
+function takeSegment(reader, { frames, vertices, corners }, { box: [low, high], density_max }) {
+  const count = frames.length, last = 65535, triangles = reader.takeWhole(corners, 1);
+  const positions = reader.takeWhole(3 * count * vertices, 3 * vertices), roots = reader.takeWhole(count * vertices, vertices);
+  const points = reader.takeWhole(4 * count * vertices, 4 * vertices), directions = octahedronOf();
+  const keys = frames.map((_, k) => {
+    const key = emptyKey(vertices);
+    for (let v = 0; v < vertices; ++v) {
+      const i = k * vertices + v, lobe = 3 * (256 * points[4 * i] + points[4 * i + 1]);
+      const normal = 3 * (256 * points[4 * i + 2] + points[4 * i + 3]);
+      for (let axis = 0; axis < 3; ++axis) {
+        key.positions[3 * v + axis] = low[axis] + (high[axis] - low[axis]) * positions[3 * i + axis] / last;
+        key.normals[3 * v + axis] = directions[normal + axis];
+      }
+      key.first[2 * v] = directions[lobe];
+      key.first[2 * v + 1] = directions[lobe + 1];
+      key.second[2 * v] = directions[lobe + 2];
+      key.second[2 * v + 1] = density_max * (roots[i] / last) ** 2;
+    }
+    return key;
+  });
+  return { triangles, keys };
+}
+
+function takeSequence(reader, packed) {
+  const { frames_per_second: framesPerSecond, segments } = packed;
+  return readySequence({ ...packed, framesPerSecond }, segments.map(segment => takeSegment(reader, segment, packed)));
+}
+
 const sum = (parts, key) => parts.reduce((all, part) => all + part[key], 0);
 
-// The arrays of all parts, from those of the stored ones: the others are copies, turned, moved and scaled.
-function withCopies(parts, stored, { positions, normals, lobes, colors, triangles }) {
-  if (stored.length === parts.length) return { positions, normals, lobes, colors, triangles };
+// The arrays of all parts, from those of the stored ones: the others are copies, turned, moved and scaled, or have room for clouds that
+// change.
+function withCopies(parts, stored, { positions, normals, lobes, colors, harmonics, harmonicsPerVertex, triangles }) {
+  if (stored.length === parts.length) return { positions, normals, lobes, colors, harmonics, triangles };
   const vertices = sum(parts, 'vertices'), all = {
     positions: new Float32Array(3 * vertices), normals: new Float32Array(3 * vertices), lobes: new Float32Array(4 * vertices),
-    colors: new Float32Array(colors.length && 3 * vertices), triangles: new Uint32Array(sum(parts, 'count')),
+    colors: new Float32Array(colors.length && 3 * vertices).fill(1), harmonics: new Float32Array(harmonicsPerVertex * vertices),
+    triangles: new Uint32Array(sum(parts, 'count')),
   };
   const from = new Map();
   let vertex = 0, index = 0;
@@ -78,7 +113,7 @@ function withCopies(parts, stored, { positions, normals, lobes, colors, triangle
     from.set(part, { vertex, index });
     vertex += part.vertices, index += part.count;
   }
-  for (const part of parts) {
+  for (const part of parts.filter(({ sequence }) => !sequence)) {
     const source = part.copy ? parts[part.copy.of] : part, by = part.copy?.by ?? [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
     const at = from.get(source), scale = Math.hypot(by[0], by[1], by[2]);
     // Turns the vectors of an array, each at the start of `stride` numbers.
@@ -93,6 +128,8 @@ function withCopies(parts, stored, { positions, normals, lobes, colors, triangle
     turn(normals, all.normals, 3, 1 / scale, [0, 0, 0]);
     turn(lobes, all.lobes, 4, 1 / scale, [0, 0, 0]);
     for (let v = 0; v < part.vertices; ++v) all.lobes[4 * (part.first_vertex + v) + 3] = scale * lobes[4 * (at.vertex + v) + 3];
+    const [begin, end] = [at.vertex, at.vertex + part.vertices].map(v => harmonicsPerVertex * v);
+    all.harmonics.set(harmonics.subarray(begin, end), harmonicsPerVertex * part.first_vertex);
     if (colors.length) all.colors.set(colors.subarray(3 * at.vertex, 3 * (at.vertex + part.vertices)), 3 * part.first_vertex);
     for (let i = 0; i < part.count; ++i)
       all.triangles[part.first + i] = triangles[at.index + i] - source.first_vertex + part.first_vertex;
@@ -113,8 +150,8 @@ function takeLayers(reader, { moon_picture, lattices }) {
 
 /** @param {Scene | ScatteredClouds} scene @returns {Promise<Arrays>} */
 export async function unpackMesh({ mesh, parts }) {
-  const { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, impostors = [], layers, data } = mesh;
-  const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
+  const { vertices, normal_steps, lobes, compared, is_colored, harmonics, fields, impostors = [], sequences = [], layers, data } = mesh;
+  const stored = parts.filter(part => !part.copy && !part.sequence), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {
     positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),
     lobes: reader.takeLobes(lobes), compared: reader.takeLobes(compared),
@@ -122,7 +159,9 @@ export async function unpackMesh({ mesh, parts }) {
     harmonics: reader.take(Float32Array, harmonics * reader.vertices), harmonicsPerVertex: harmonics,
     triangles: reader.takeWhole(sum(stored, 'count'), 1), fields: fields.map(cells => reader.take(Uint8Array, cells)),
     impostors: impostors.map(bytes => ({ lobe: reader.take(Uint8Array, bytes), rest: reader.take(Uint8Array, bytes) })),
+    sequences: sequences.map(packed => takeSequence(reader, packed)),
   };
+  for (const part of parts) if (part.sequence) part.room = part.count;
   const of_layers = layers && takeLayers(reader, layers), all = withCopies(parts, stored, own);
   return { ...own, ...all, layers: of_layers, triangles: packedTriangles(all.triangles, vertices) };
 }

@@ -69,6 +69,7 @@ export function listenToKeys(viewer) {
     else if (arrow) viewer.turn(arrow[0], arrow[1]);
     else if (zooms[key]) viewer.zoom(zooms[key]);
     else if (key === 'Home') viewer.reset();
+    else if (key === ' ' && viewer.clock.sequence) viewer.clock.play(!viewer.clock.plays);
     else return;
     event.preventDefault();
   });

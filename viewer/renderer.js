@@ -22,13 +22,19 @@ export class Renderer {
   setScene(scene) {
     this.scene = scene;
     this.layers = scene.layers ? new this.SceneLayers(this) : null;
-    this.vertices?.delete();
-    this.vertices = new Vertices(this.gpu, scene);
-    this.fields?.delete();
-    this.shade = new CloudShade(scene);
-    this.fields = scene.scattered ? new Fields(this.gpu, scene) : null;
+    this.takeMeshes();
     this.impostors = Impostors.areIn(scene) ? new Impostors(this.gpu, scene) : null;
     this.skyKey = null;
+  }
+
+  // Vertices, triangles or casters of the scene are others than before.
+  takeMeshes() {
+    const { gpu, scene } = this;
+    this.vertices?.delete();
+    this.vertices = new Vertices(gpu, scene);
+    this.fields?.delete();
+    this.shade = new CloudShade(scene);
+    this.fields = scene.scattered ? new Fields(gpu, scene) : null;
   }
 
   // Settings have changed: the sky is to be drawn anew.
@@ -161,6 +167,17 @@ export class Renderer {
       for (const work = this.drawScene(); !this.layers.isComposed;) work.next();  // of the samples so far
       this.layers.show();
     }
+  }
+
+  // Draws the picture of the samples so far, which counts so much, and adds it to those that were blended before. Shows the last one.
+  showBlended(weight, number, is_last) {
+    const { gpu, gpu: { size, gl: { RGBA16F } } } = this, [from, to] = [0, 1].map(i => `blended ${(number + i) % 2}`);
+    gpu.screen = gpu.target('one picture', size, RGBA16F);
+    this.show();
+    gpu.screen = null;
+    if (number === 0) gpu.clear([gpu.target(from, size, RGBA16F)], [0, 0, 0, 0]);
+    gpu.fill(is_last ? [] : [gpu.target(to, size, RGBA16F)], gpu.program('accumulate.frag'),
+      { sums: from, samples: 'one picture', share: weight, fineness: 1, pixel: [0, 0] });
   }
 
   // The samples so far.

@@ -80,7 +80,8 @@ export function homeOf(page, scene) {
 }
 
 /** @param {Scene} scene */
-const isVertex = (scene, v) => Number.isInteger(v) && v >= 0 && v < scene.arrays.positions.length / 3;
+export const isVertex = ({ parts }, v) =>
+  Number.isInteger(v) && parts.some(({ first_vertex: first, vertices }) => v >= first && v < first + vertices);
 
 /** A state with all words and numbers that make sense. @param {Page} page @returns {State} */
 export function validState(page, wanted) {

@@ -5,6 +5,17 @@ type Row = number[];
 
 interface Shape { lobe: string; is_of_volume?: boolean; shape: number[]; extinction?: number; compared?: Shape }
 
+type SequenceKey = import('../engines/npm/sequence.js').Key;
+
+/** The frames from the first key to the last one, which have the same triangles; `key` has what is seen between two. */
+interface SequenceSegment { frames: number[]; keys: SequenceKey[]; triangles: Uint16Array | Uint32Array; key: SequenceKey }
+
+/** A cloud that changes: engines/npm/sequence.js. */
+interface CloudSequence { framesPerSecond: number; loops: boolean; period: number; segments: SequenceSegment[] }
+
+/** A picture that is blended with others: how much it counts, and which segment and frame of each sequence it shows. */
+interface FadedPicture { weight: number; seen: Map<CloudSequence, { segment: number; frame: number }> }
+
 /** A placed cloud: its ranges of vertices and triangles, and how it is lit. */
 interface Part extends Shape {
   first: number; count: number; first_vertex: number; vertices: number; extinction: number;
@@ -18,6 +29,8 @@ interface Part extends Shape {
   level?: { of: number; pixels: number };
   /** Of a part with levels: its box, and its longest side. */
   seen?: { low: Vec3; high: Vec3; longest: number };
+  /** Of a cloud that changes: its number, its place as columns and offset, and how many corners of triangles there is room for. */
+  sequence?: { of: number; by: number[] }; room?: number;
   /** Of an impostor, whose vertices are the corners of its box, without triangles. */
   impostor?: PlacedImpostor;
 }
@@ -40,6 +53,9 @@ interface Arrays {
   triangles: Uint16Array | Uint32Array;
   fields?: Uint8Array[];
   impostors?: { lobe: Uint8Array; rest: Uint8Array }[];  // three bytes per pixel of the atlas
+  sequences?: CloudSequence[];
+  shown?: string;  // which meshes of them
+  shaded?: Record<number, string>;  // which of them cast the shadow of a caster
   layers?: { moon?: { width: number; height: number; bytes: Uint8Array }; lattices: Lattice[] };
 }
 

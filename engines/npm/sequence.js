@@ -37,7 +37,7 @@ export function sequenceOf(json) {
 /**
  * The segments that are seen at a time, with the frame and the weight of each: one, or two while one fades into the other, the earlier one
  * first. A sequence that does not loop stays at its last frame.
- * @param {Sequence} sequence @param {number} seconds
+ * @param {Pick<Sequence, 'framesPerSecond' | 'loops' | 'period'> & { segments: { frames: number[] }[] }} sequence @param {number} seconds
  */
 export function seenAt({ segments, framesPerSecond, loops, period }, seconds) {
   const first = i => segments[i].frames[0], last = i => segments[i].frames.at(-1), end = segments.length - 1;
@@ -178,9 +178,9 @@ function unfiltered(rows, height, stride, channels) {
   return bytes;
 }
 
-// The directions of the octahedron's map, by the two bytes of a point: three numbers each.
 let octahedron = null;
-function octahedronOf() {
+/** The directions of the octahedron's map, by the two bytes of a point: three numbers each. @returns {Float32Array} */
+export function octahedronOf() {
   if (octahedron) return octahedron;
   octahedron = new Float32Array(3 * 65536);
   for (let i = 0; i < 65536; ++i) {

@@ -19,6 +19,7 @@
 #include "pipeline/page/layer_data.h"
 #include "pipeline/page/live_layers.h"
 #include "pipeline/page/packed_mesh.h"
+#include "pipeline/page/packed_sequence.h"
 #include "pipeline/picture/scene_shadows.h"
 #include "preview/mesh_clouds/levels.h"
 
@@ -317,7 +318,7 @@ struct Lobes {
 // arrays of the page, but its vertices are those of the first one, moved; they are not stored.
 struct Meshes {
   MeshPacker packer;                                             // has the positions
-  size_t vertices = 0, indices = 0;                              // with copies
+  size_t vertices = 0, indices = 0;                              // with copies and with room for clouds that change
   std::map<const BakedMesh*, std::pair<size_t, Affine>> firsts;  // the part that is stored, and its place
   std::vector<Vec3> normals;
   Lobes lobes, compared;
@@ -328,6 +329,7 @@ struct Meshes {
   int harmonic_order = 0;  // the largest of all clouds
   bool compares = false, are_colored = false;
   std::vector<const Impostor*> impostors;
+  std::vector<const CloudSequence*> sequences;
   Json parts = Json::array(), corners = Json::array();
 };
 
@@ -425,10 +427,31 @@ Json impostorJson(Meshes& all, const Instance& instance, const SceneFile& scene)
           {"gains", info.gains}};
 }
 
+// Of a cloud that changes, the part has room for the largest of its meshes, which the page puts there.
+PlacedMesh roomFor(const CloudSequence& sequence, PlacedMesh placed) {
+  size_t vertices = 0, triangles = 0;
+  for (const SequenceSegment& segment : sequence.segments) {
+    vertices = std::max(vertices, segment.keys.front().positions.size());
+    triangles = std::max(triangles, segment.triangles.size());
+  }
+  placed.positions.resize(vertices), placed.triangles.resize(triangles);
+  return placed;
+}
+
+// Which sequence an instance shows, and where.
+Json sequenceJson(Meshes& all, const Instance& instance, const CloudSequence& sequence) {
+  const auto known = std::find(all.sequences.begin(), all.sequences.end(), &sequence);
+  const auto of = known - all.sequences.begin();
+  if (known == all.sequences.end()) all.sequences.push_back(&sequence);
+  return {{"of", of}, {"by", affineJson(instance.to_world)}};
+}
+
 // Of an impostor, the part has the corners of its box, where the page finds the light that comes past other things, and no triangles.
 void appendInstance(Meshes& all, const Instance& instance, const Scenery& scenery) {
   PlacedMesh placed = placedMesh(instance, scenery.scene.light);
   if (instance.mesh->impostor) placed.triangles.clear();
+  const auto changing = scenery.sequences.find(instance.mesh);
+  if (changing != scenery.sequences.end()) placed = roomFor(changing->second.sequence, std::move(placed));
   const auto first = uint32_t(all.vertices);
   Json part = {{"first", all.indices},
                {"count", 3 * placed.triangles.size()},
@@ -441,7 +464,9 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   appendCaster(all, instance, part);
   if (instance.mesh->impostor) part["impostor"] = impostorJson(all, instance, scenery.scene);
   all.vertices += placed.positions.size(), all.indices += 3 * placed.triangles.size();
-  if (!isCopy(all, instance, part)) {
+  if (changing != scenery.sequences.end()) {
+    part["sequence"] = sequenceJson(all, instance, changing->second.sequence);
+  } else if (!isCopy(all, instance, part)) {
     part.update(all.packer.addPositions(placed.positions));
     all.normals.insert(all.normals.end(), placed.normals.begin(), placed.normals.end());
     all.lobes.append(placed.lobes);
@@ -458,7 +483,7 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   const BakedMesh& with_harmonics =
       compared == scenery.compared.end() || !instance.mesh->harmonics.empty() ? *instance.mesh : compared->second;
   if (!with_harmonics.harmonics.empty()) part["harmonics"] = harmonicsJson(instance, with_harmonics);
-  if (all.harmonic_order > 0) appendHarmonics(all, with_harmonics);
+  if (all.harmonic_order > 0 && changing == scenery.sequences.end()) appendHarmonics(all, with_harmonics);
   if (compared != scenery.compared.end()) {
     const PlacedMesh other = placedMesh({&compared->second, instance.to_world}, scenery.scene.light);
     part["compared"] = {{"lobe", compared->second.info.lobe},
@@ -468,7 +493,7 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   } else if (all.compares) {
     all.compared.append(placed.lobes);
   }
-  const Box box = drawnBox(instance.mesh->surface);
+  const Box box = boxOfMesh(instance);
   for (int i = 0; i < 8 && !box.empty(); ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, box.corner(i))));
   all.parts.push_back(std::move(part));
 }
@@ -523,7 +548,7 @@ Json meshJson(Meshes& meshes, const SceneFile* layered) {
   json["is_colored"] = meshes.are_colored;
   packer.addRounded(meshes.colors);
   packer.addFloats(meshes.harmonics);
-  json["harmonics"] = meshes.harmonics.size() / std::max<size_t>(1, meshes.vertices);
+  json["harmonics"] = meshes.harmonics.empty() ? 0 : (harmonicCount(meshes.harmonic_order) + 3) / 4 * 4;
   packer.addTriangles(meshes.triangles);
   json["fields"] = Json::array();
   for (const ShadowCaster* caster : meshes.casters) {
@@ -534,6 +559,7 @@ Json meshJson(Meshes& meshes, const SceneFile* layered) {
     for (const Image& picture : {impostor->lobe.front(), impostor->rest.front()}) packer.addBytes(bytesOf(picture));
     json["impostors"].push_back(3 * impostor->lobe.front().pixels.size());
   }
+  for (const CloudSequence* sequence : meshes.sequences) json["sequences"].push_back(packedSequence(*sequence, packer));
   if (layered) json["layers"] = packedLayers(*layered, packer);
   json["data"] = packer.packed();
   return json;
@@ -558,7 +584,7 @@ Json fieldJson(const DrawnField& field, bool has_world_extinction, size_t& next_
                                Json(shortest(cloud.turn_degrees)), Json(shortest(cloud.size)), Json(cloud.mesh)})
       json["clouds"].push_back(number);
   for (const Instance& mesh : field.meshes) {
-    const Box box = drawnBox(mesh.mesh->surface);
+    const Box box = boxOfMesh(mesh);
     Json corners = Json::array();
     for (int i = 0; i < 8 && !box.empty(); ++i) corners.push_back(jsonOf(transformPoint(mesh.to_world, box.corner(i))));
     json["meshes"].push_back({{"part", next_part}, {"corners", std::move(corners)}, {"longest", shortest(longestStretched(mesh))}});
@@ -606,7 +632,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const SunTable suns = sunTable(scenery);
   const std::vector<Instance> instances = instancesAt(scenery, file.view);
   Meshes meshes = meshesOf(scenery.instances, scenery);
-  if (meshes.triangles.empty() && meshes.impostors.empty() && scenery.fields.empty() && !isLayered(file))
+  if (meshes.triangles.empty() && meshes.impostors.empty() && meshes.sequences.empty() && scenery.fields.empty() && !isLayered(file))
     throw UsageError("view needs a cloud with triangles, or another layer");
 
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};

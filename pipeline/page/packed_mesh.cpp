@@ -42,7 +42,7 @@ std::array<float, 2> onSquare(Vec3 direction) {
 
 }  // namespace
 
-// Each number as its difference from the one before at the same place of a vector of `width` numbers; negative ones become odd.
+// Negative differences become odd.
 void MeshPacker::addWhole(const std::vector<uint32_t>& values, size_t width) {
   std::vector<uint32_t> coded;
   for (size_t i = 0; i < values.size(); ++i) {

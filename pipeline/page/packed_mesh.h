@@ -22,6 +22,8 @@ class MeshPacker {
   void addRounded(std::span<const float> values);
   /// Floats as they are.
   void addFloats(const std::vector<float>& values);
+  /// Whole numbers, each as its difference from the one at the same place of the vector of `width` numbers before.
+  void addWhole(const std::vector<uint32_t>& values, size_t width);
   /// Three vertices per triangle.
   void addTriangles(const std::vector<uint32_t>& vertices);
   void addBytes(std::span<const uint8_t> bytes);
@@ -29,8 +31,6 @@ class MeshPacker {
   std::string packed() const;
 
  private:
-  void addWhole(const std::vector<uint32_t>& values, size_t width);
-
   std::string bytes_;
 };
 

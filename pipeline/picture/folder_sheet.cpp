@@ -12,6 +12,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/impostor/impostor_file.h"
+#include "io/gltf/sequence/sequence_file.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/picture/picture.h"
 #include "preview/compare/lettering.h"
@@ -28,7 +29,7 @@ std::string kindOf(const fs::path& file) {
   if (kind == SourceKind::kVolume) return "volume";
   if (isGrown(kind)) return "recipe";
   const std::string bytes = readFileBytes(file);
-  return isImpostor(bytes) ? "impostor" : isBakedAsset(file, bytes) ? "baked asset" : "sculpt";
+  return isImpostor(bytes) ? "impostor" : isSequence(bytes) ? "sequence" : isBakedAsset(file, bytes) ? "baked asset" : "sculpt";
 }
 
 // The text of an error without the folder of its file, which the title of the panel has, and without its name where no line follows.

@@ -208,11 +208,8 @@ void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Wa
 // A cloud of a scene where it is placed, with its levels, and with the field that casts its shadow if there are shadows.
 Instance placed(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
   Instance instance{&meshOf(cloud, scenery, warnings), cloud.to_world};
-  if (const auto changing = scenery.sequences.find(instance.mesh); changing != scenery.sequences.end()) {
-    if (scenery.scene.view.is_live)
-      throw InputError(cloud.file.string(), "is a sequence, which the page does not play: draw it with `cloudbake preview --animate`");
+  if (const auto changing = scenery.sequences.find(instance.mesh); changing != scenery.sequences.end())
     instance.whole = changing->second.whole;
-  }
   if (cloud.levels) setLevels(cloud, instance, scenery, warnings);
   if (!drawsShadows(scenery.scene) || instance.mesh->impostor) return instance;
   const auto [found, is_new] = scenery.casters.try_emplace(instance.mesh);
@@ -298,6 +295,8 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     asset.file = settings.source.input;
     scenery.instances.push_back(placed(asset, scenery, report.warnings));
     const BakedMesh& mesh = *scenery.instances.back().mesh;
+    if (scene.view.compare && !scenery.sequences.empty())
+      throw UsageError("--compare shows other lobes of a cloud, and a sequence has none: leave it out");
     if (scene.view.compare) scenery.compared.emplace(&mesh, comparedMesh(settings.source, mesh));
     if (scene.view.plain) scene.post = publishedPost();
     scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
@@ -437,7 +436,9 @@ Scenery bakeScenery(const Settings& settings, std::span<const Given> given, Bake
   std::vector<Given> of_bake;
   std::copy_if(given.begin(), given.end(), std::back_inserter(of_bake), [](const Given& one) { return needsWatch(*one.option); });
   Scenery scenery;
-  const auto isBaked = [&](const std::string& bytes) { return isBakedAsset(source.input, bytes) || isImpostor(bytes); };
+  const auto isBaked = [&](const std::string& bytes) {
+    return isBakedAsset(source.input, bytes) || isImpostor(bytes) || isSequence(bytes);
+  };
   if (source.kind != SourceKind::kSculpt || !isBaked(readFileBytes(source.input)))
     scenery.meshes.emplace(source.input.string(), bakedMesh(source, of_bake, report));
   else if (!of_bake.empty())

@@ -284,10 +284,9 @@ void showMoment(const Scenery& scenery, double seconds, std::vector<Instance>& i
   }
 }
 
-// The box of a mesh as long as the cloud is there.
-Box boxOfMesh(const Instance& instance) { return instance.whole ? *instance.whole : drawnBox(instance.mesh->surface); }
-
 }  // namespace
+
+Box boxOfMesh(const Instance& instance) { return instance.whole ? *instance.whole : drawnBox(instance.mesh->surface); }
 
 std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
   std::vector<Instance> instances = scenery.instances;

@@ -40,6 +40,9 @@ struct Scenery {
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
 
+/// The box of an instance's triangles in its own space; of a cloud that changes, at all times.
+Box boxOfMesh(const Instance& instance);
+
 /// A box that the clouds of a field never leave.
 Box boxOf(const DrawnField& field);
 

@@ -161,6 +161,18 @@ async function takesFolders(page) {
   await baked(page, 1);
   demand(/^642 vertices, \d+ ms/.test((await states(page))[0].text), 'and baked again');
 
+  // A sequence is shown, also when all are baked again.
+  await open(page);
+  run('sequence', 'humilis', '--vary', 'size=0.5:0.6', '--frame-count', '3', '--vertices', '300', '--voxels', '24', '--as', 'picture',
+    '-o', 'grows.glb');
+  await give(page, ['grows.glb'], 1);
+  const sequence = async () => [(await states(page))[0].state, await page.isVisible('#transport'), await page.isVisible('#bake-fit')];
+  demand(String(await sequence()) === 'baked,true,false', `a sequence plays: ${await sequence()}`);
+  await page.evaluate(() => { document.getElementById('bake-options').open = true; });
+  await page.click('#bake-again');
+  await baked(page, 1);
+  demand(String(await sequence()) === 'baked,true,false', 'and is not baked again');
+
   // The same by drops, as the browser gets them from the desktop: folders come as entries.
   const devtools = await page.context().newCDPSession(page);
   const drop = async (...names) => {

@@ -73,12 +73,13 @@ function sculptsAmong(files, extensions) {
 /** A GLB that has lobes already, which is shown as it is. @param {Uint8Array} glb @returns {Baked} */
 function assetIn(glb) {
   try {
-    const { json } = new GlbReader(glb.buffer);
+    const { json, info } = new GlbReader(glb.buffer), is_sequence = info.layout === 'lobe-sequence';
     let vertices = 0;
     for (const { primitives } of json.meshes)
       for (const { attributes } of primitives) vertices += json.accessors[attributes.POSITION].count;
-    return { glb, report: { vertices, warnings: /** @type {object[]} */ ([]) }, milliseconds: 0,
-      summary: 'This GLB already has lobes and is shown unchanged. "Bake again" replaces its lobes.' };
+    return { glb, report: { vertices, warnings: /** @type {object[]} */ ([]) }, milliseconds: 0, is_sequence,
+      summary: is_sequence ? 'This GLB is a sequence and is shown unchanged.'
+        : 'This GLB already has lobes and is shown unchanged. "Bake again" replaces its lobes.' };
   } catch {
     return null;
   }
@@ -316,8 +317,8 @@ class Baker {
         return;
       }
       /** @type {Record<string, Uint8Array>} */
-      const files = { [job.name]: await bytesOfFile(job.file) }, asset = job.result ? null : assetIn(files[job.name]);
-      if (asset) {
+      const files = { [job.name]: await bytesOfFile(job.file) }, asset = assetIn(files[job.name]);
+      if (asset && (asset.is_sequence || !job.result)) {
         this.change(job, { state: 'baked', result: asset });
         await this.show(job);
         return;
@@ -494,20 +495,22 @@ class Baker {
         window.viewer.showScene(known < 0 ? scenes.length : known, scene);
       }
       this.shown = job;
-      element('bake-report').hidden = element('bake-fit').hidden = job === this.first;
+      element('bake-report').hidden = job === this.first;
+      element('bake-fit').hidden = job === this.first || !!job.result.is_sequence;
       return scene;
     };
     return this.viewing = this.viewing.catch(() => {}).then(showNow);
   }
 
   /**
-   * Exact lengths by the module, for any sun; without them (an open mesh) the viewer says why.
+   * Exact lengths by the module, for any sun; without them (an open mesh) the viewer says why. The viewer computes those of a sequence.
    * @param {Job} job @param {any} scene @param {Uint8Array} glb
    */
   async openLight(job, scene, glb) {
     this.light?.close();
     /** @type {Light} */
     this.light = null;
+    if (job.result.is_sequence) return;
     try {
       const light = await this.engine.transmittance(glb, job.asset);
       if (this.shown !== job) {

@@ -19,7 +19,7 @@ interface PathFile { path: string; file: File }
 interface Sculpt extends PathFile { name: string; beside: { name: string; file: File }[] }
 
 /** Without seconds, it was baked before. */
-interface Baked extends Asset { milliseconds: number }
+interface Baked extends Asset { milliseconds: number; is_sequence?: boolean }
 
 /**
  * A sculpt on its way: waiting, reading, a stage, baked, failed or cancelled; the options of its bake as JSON, the name of its asset, and

@@ -22,12 +22,12 @@ size_t texelAt(const KeyTexturePlace& place, int block, int key, size_t vertex) 
   return row * kSequenceColumns + vertex % kSequenceColumns;
 }
 
-int steps(double share) { return int(std::lround(kSteps * std::clamp(share, 0.0, 1.0))); }
+uint16_t steps(double share) { return uint16_t(std::lround(kSteps * std::clamp(share, 0.0, 1.0))); }
 
 // A direction as two bytes: the nearest of the four points around its place in the octahedron's map.
-std::array<int, 2> directionBytes(Vec3 direction) {
+std::array<uint8_t, 2> directionBytes(Vec3 direction) {
   const auto [u, v] = octahedronPlace(direction.x, direction.y, direction.z);
-  std::array<int, 2> best{};
+  std::array<uint8_t, 2> best{};
   double most = -INFINITY;
   const double x = 255 * (u / 2 + 0.5), y = 255 * (v / 2 + 0.5);
   for (const int i : {int(std::floor(x)), int(std::floor(x)) + 1})
@@ -35,7 +35,7 @@ std::array<int, 2> directionBytes(Vec3 direction) {
       if (i < 0 || j < 0 || i > 255 || j > 255) continue;
       const auto [px, py, pz] = octahedronPoint(i / 127.5 - 1, j / 127.5 - 1);
       const double cosine = (px * direction.x + py * direction.y + pz * direction.z) / std::sqrt(px * px + py * py + pz * pz);
-      if (cosine > most) most = cosine, best = {i, j};
+      if (cosine > most) most = cosine, best = {uint8_t(i), uint8_t(j)};
     }
   return best;
 }
@@ -69,22 +69,33 @@ KeyTextureScale scaleOfTexture(const CloudSequence& sequence) {
   return scale;
 }
 
+std::vector<KeyNumbers> numbersOfKey(const SequenceKey& key, const KeyTextureScale& scale) {
+  const Vec3 low = scale.box.low, size = scale.box.size();
+  const auto share = [](float value, float from, float extent) { return extent > 0 ? (double(value) - from) / extent : 0; };
+  std::vector<KeyNumbers> numbers;
+  numbers.reserve(key.positions.size());
+  for (size_t v = 0; v < key.positions.size(); ++v) {
+    const Vec3 p = key.positions[v];
+    const Lobe& lobe = key.lobes[v];
+    numbers.push_back({{steps(share(p.x, low.x, size.x)), steps(share(p.y, low.y, size.y)), steps(share(p.z, low.z, size.z))},
+                       scale.densest > 0 ? steps(std::sqrt(double(lobe.thickness) / scale.densest)) : uint16_t(0),
+                       directionBytes(lobe.direction),
+                       directionBytes(key.normals[v])});
+  }
+  return numbers;
+}
+
 Image keyTexture(const CloudSequence& sequence, const std::vector<KeyTexturePlace>& places, const KeyTextureScale& scale) {
   Image image{kSequenceColumns, rowsOfTexture(places), {}};
   image.pixels.resize(size_t(image.width) * size_t(image.height));
   const auto store = [&](size_t at, const Texel& bytes) {
     image.pixels[at] = {float(bytes[0]) / 255, float(bytes[1]) / 255, float(bytes[2]) / 255};
   };
-  const Vec3 low = scale.box.low, size = scale.box.size();
-  const auto share = [](float value, float from, float extent) { return extent > 0 ? (double(value) - from) / extent : 0; };
   for (size_t s = 0; s < places.size(); ++s)
     for (int k = 0; k < places[s].keys; ++k) {
-      const SequenceKey& key = sequence.segments[s].keys[size_t(k)];
-      for (size_t v = 0; v < places[s].vertices; ++v) {
-        const Vec3 p = key.positions[v];
-        const Texel place{steps(share(p.x, low.x, size.x)), steps(share(p.y, low.y, size.y)), steps(share(p.z, low.z, size.z))};
-        const int root = scale.densest > 0 ? steps(std::sqrt(double(key.lobes[v].thickness) / scale.densest)) : 0;
-        const auto lobe = directionBytes(key.lobes[v].direction), normal = directionBytes(key.normals[v]);
+      const std::vector<KeyNumbers> key = numbersOfKey(sequence.segments[s].keys[size_t(k)], scale);
+      for (size_t v = 0; v < key.size(); ++v) {
+        const auto& [place, root, lobe, normal] = key[v];
         store(texelAt(places[s], 0, k, v), {place[0] / 256, place[1] / 256, place[2] / 256});
         store(texelAt(places[s], 1, k, v), {place[0] % 256, place[1] % 256, place[2] % 256});
         store(texelAt(places[s], 2, k, v), {lobe[0], lobe[1], root / 256});

@@ -1,6 +1,8 @@
-// The keys of a sequence as the texels of a picture. Only for io/gltf/sequence.
+// The keys of a sequence as whole numbers, and as the texels of a picture. Only for io/gltf/sequence and the page of `view`.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/image.h"
@@ -14,9 +16,17 @@ struct KeyTextureScale {
   float densest = 0;  ///< the largest d: 0 … 65535 is the root of d / densest
 };
 
+/// A vertex of a key.
+struct KeyNumbers {
+  std::array<uint16_t, 3> position{};
+  uint16_t root = 0;                        ///< of d
+  std::array<uint8_t, 2> lobe{}, normal{};  ///< points of the octahedron's map (core/lobe_packing.h), 255 · (u/2 + ½)
+};
+std::vector<KeyNumbers> numbersOfKey(const SequenceKey& key, const KeyTextureScale& scale);
+
 /// Where the picture has the keys of a segment: texel (v mod columns, first_row + (block · rows + v / columns) · keys + key) for vertex v,
-/// with `rows` = the rows that its vertices need, and blocks 0 to 3: the high bytes of x, y and z; their low bytes; o as a point of the
-/// octahedron's map (core/lobe_packing.h), 255 · (u/2 + ½), and the high byte of d; the normal likewise, and the low byte of d.
+/// with `rows` = the rows that its vertices need, and blocks 0 to 3: the high bytes of x, y and z; their low bytes; o and the high byte of
+/// d's root; the normal and the low byte of d's root.
 struct KeyTexturePlace {
   int first_row = 0, keys = 0;
   size_t vertices = 0;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/impostor.h"
 #include "io/gltf/asset_info.h"
+#include "pipeline/page/live_layers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 
@@ -129,6 +130,53 @@ TEST(LivePage, SaysHowTheVolumeOfASingleCloudShowsLight) {
   EXPECT_EQ(partOf()["is_open"], true);
   scenery.instances.push_back({&ball, placement({9, 0, 0}, {}, {1, 1, 1})});
   EXPECT_FALSE(partOf().contains("volume") || partOf().contains("is_open")) << "of several clouds no volume is marched";
+}
+
+// A ball of 1 that becomes one of 2, then a finer one of 2, in two places; the second is mirrored.
+Scenery growingBalls() {
+  Scenery scenery;
+  const auto keyOf = [](double frame, const BakedMesh& ball) {
+    return SequenceKey{frame, ball.surface.positions, ball.surface.normals, ball.lobes};
+  };
+  const BakedMesh small = bakedBall(1), large = bakedBall(2), fine = bakedBall(2, {}, 3);
+  BakedMesh& first = scenery.meshes["grows"] = small;
+  SceneSequence& own = scenery.sequences[&first];
+  own.sequence = {small.info, 12, true, 20, {}};
+  own.sequence.segments = {{small.surface.triangles, {keyOf(0, small), keyOf(10, large)}}, {fine.surface.triangles, {keyOf(8, fine)}}};
+  own.whole = drawnBox(fine.surface);
+  for (const float x : {-5.0F, 5.0F}) scenery.instances.push_back({&first, placement({x, 0, 0}, {}, {x / 5, 1, 1})});
+  for (Instance& instance : scenery.instances) instance.whole = own.whole;
+  scenery.scene.light = lightFor(scenery.scene.post, 130, 28);
+  return scenery;
+}
+
+// Eight whole numbers of four bytes per vertex and key, and an index for each corner; tests/browser/sequences.mjs unpacks them. There is
+// room for the largest mesh in each place.
+TEST(LivePage, HoldsTheKeysOfACloudThatChanges) {
+  const Scenery scenery = growingBalls();
+  const CloudSequence& sequence = scenery.sequences.begin()->second.sequence;
+  const LiveScene live = liveScene(scenery, "grows");
+  const Json &mesh = live.scene["mesh"], &parts = live.scene["parts"];
+  ASSERT_EQ(mesh["sequences"].size(), 1U) << "which both places share";
+  const size_t coarse = sequence.segments[0].keys[0].positions.size(), fine = sequence.segments[1].keys[0].positions.size();
+  const size_t corners = 3 * sequence.segments[0].triangles.size(), fine_corners = 3 * sequence.segments[1].triangles.size();
+  EXPECT_EQ(mesh["sequences"][0]["segments"], Json({{{"frames", {0.0, 10.0}}, {"vertices", coarse}, {"corners", corners}},
+                                                    {{"frames", {8.0}}, {"vertices", fine}, {"corners", fine_corners}}}));
+  EXPECT_EQ(mesh["sequences"][0]["frames_per_second"], 12);
+  EXPECT_EQ(mesh["sequences"][0]["period"], 20);
+  EXPECT_EQ(mesh["sequences"][0]["loops"], true);
+  EXPECT_EQ(meshBytes(live).size(), 32 * (2 * coarse + fine) + 4 * (corners + fine_corners));
+  EXPECT_EQ(mesh["vertices"], 2 * fine);
+  for (const size_t i : {0, 1}) {
+    EXPECT_EQ(parts[i]["vertices"], fine);
+    EXPECT_EQ(parts[i]["first_vertex"], i * fine);
+    EXPECT_EQ(parts[i]["count"], fine_corners);
+    EXPECT_EQ(parts[i]["sequence"]["of"], 0);
+    EXPECT_EQ(parts[i]["sequence"]["by"], affineJson(scenery.instances[i].to_world));
+  }
+  float lowest = 0;
+  for (const Json& corner : live.scene["corners"]) lowest = std::min(lowest, corner[1].get<float>());
+  EXPECT_NEAR(lowest, -2, 0.1) << "the box of all times";
 }
 
 // A copy has its own place among the vertices, and says how it is made of those that are stored.

@@ -209,8 +209,8 @@ TEST(Picture, ShowsACloudThatChangesAtItsTime) {
   const Scenery scenery = readScenery(resolve(sourceOf(SourceKind::kSculpt, file), given), given, report);
   EXPECT_EQ(filmOf(scenery.scene, true, true).moving.back(), "clouds that change");
   Settings live = resolve(sourceOf(SourceKind::kSculpt, file), {});
-  live.picture.is_live = true;
-  EXPECT_TRUE(contains(refusalOf<InputError>([&] { readScenery(live, {}, report); }), "is a sequence, which the page does not play"));
+  live.picture.is_live = live.picture.compare = true;
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { readScenery(live, {}, report); }), "a sequence has none"));
 }
 
 TEST(Picture, ADaySunRisesAndSetsBelowTheHorizon) {
