@@ -289,7 +289,8 @@ AssetInfo requireInfo(const std::filesystem::path& file, const Json& document) {
   if (isImpostorDocument(document))
     throw InputError(file.string(), "is an impostor, which is pictures and no mesh: give the baked asset that it was made of");
   if (isSequenceDocument(document))
-    throw InputError(file.string(), "is a sequence, which preview, view and check take: give one of its keys (cloudbake sequence --as keys)");
+    throw InputError(file.string(),
+                     "is a sequence, which preview, view and check take: give one of its keys (cloudbake sequence --as keys)");
   try {
     const Json& record = recordOf(document);
     AssetInfo info = parseInfo(record);
