@@ -106,8 +106,15 @@ std::vector<fs::path> filesOfInput(const fs::path& input) {
 }  // namespace
 
 std::vector<FrameInput> frameFiles(const fs::path& input) {
+  const std::vector<fs::path> files = filesOfInput(input);
+  if (files.size() < 2)
+    throw InputError(
+        input.string(),
+        fmt::format("{} found, and a sequence has at least two: give a folder, a pattern in quotes such as 'smoke.####.vdb', or one glTF, "
+                    "GLB or FBX with an animation",
+                    files.empty() ? "no frame was" : "only one frame was"));
   std::vector<std::pair<int64_t, fs::path>> numbered;
-  for (const fs::path& file : filesOfInput(input)) {
+  for (const fs::path& file : files) {
     const auto number = numberIn(file);
     if (!number)
       throw InputError(file.string(),
@@ -116,12 +123,6 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
     numbered.emplace_back(*number, file);
   }
   std::sort(numbered.begin(), numbered.end());
-  if (numbered.size() < 2)
-    throw InputError(
-        input.string(),
-        fmt::format("{} found, and a sequence has at least two: give a folder, a pattern in quotes such as 'smoke.####.vdb', or one "
-                    "glTF, GLB or FBX with an animation",
-                    numbered.empty() ? "no frame was" : "only one frame was"));
   std::vector<FrameInput> frames;
   for (size_t i = 0; i < numbered.size(); ++i) {
     const auto& [number, file] = numbered[i];
