@@ -154,9 +154,9 @@ AnimationFrames animationFrames(const Settings& settings) {
   const double count = settings.sequence.frames ? *settings.sequence.frames : std::round(seconds * animation.frames_per_second) + 1;
   if (count < 2 || count > kMostFrames)
     throw UsageError(
-        fmt::format("{}: its animation of {:.4g} seconds has {:.0f} frames, and 2 to {:.0f} are possible: give another --fps, or "
-                    "--frame-count",
-                    file.string(), seconds, count, kMostFrames));
+        fmt::format("{}: at {:g} frames per second, its animation of {:.4g} seconds makes {:.0f}, and a sequence has 2 to {:.0f}: give "
+                    "another --fps, or --frame-count",
+                    file.string(), animation.frames_per_second, seconds, count, kMostFrames));
   if (settings.sequence.frames && !settings.sequence.frames_per_second) animation.frames_per_second = (count - 1) / seconds;
   for (int i = 0; i < int(count); ++i) {
     const double at = settings.sequence.frames ? seconds * i / (count - 1) : i / animation.frames_per_second;
