@@ -117,8 +117,15 @@ bool isVariable(const std::string& name, const GrownSource& source) {
 }  // namespace
 
 std::vector<FrameInput> frameFiles(const fs::path& input) {
+  const std::vector<fs::path> files = filesOfInput(input);
+  if (files.size() < 2)
+    throw InputError(
+        input.string(),
+        fmt::format("{} found, and a sequence has at least two: give a folder, a pattern in quotes such as 'smoke.####.vdb', or one glTF, "
+                    "GLB or FBX with an animation",
+                    files.empty() ? "no frame was" : "only one frame was"));
   std::vector<std::pair<int64_t, fs::path>> numbered;
-  for (const fs::path& file : filesOfInput(input)) {
+  for (const fs::path& file : files) {
     const auto number = numberIn(file);
     if (!number)
       throw InputError(file.string(),
@@ -127,12 +134,6 @@ std::vector<FrameInput> frameFiles(const fs::path& input) {
     numbered.emplace_back(*number, file);
   }
   std::sort(numbered.begin(), numbered.end());
-  if (numbered.size() < 2)
-    throw InputError(
-        input.string(),
-        fmt::format("{} found, and a sequence has at least two: give a folder, a pattern in quotes such as 'smoke.####.vdb', or one "
-                    "glTF, GLB or FBX with an animation",
-                    numbered.empty() ? "no frame was" : "only one frame was"));
   std::vector<FrameInput> frames;
   for (size_t i = 0; i < numbered.size(); ++i) {
     const auto& [number, file] = numbered[i];
@@ -164,9 +165,9 @@ AnimationFrames animationFrames(const Settings& settings) {
   const double count = settings.sequence.frames ? *settings.sequence.frames : std::round(seconds * animation.frames_per_second) + 1;
   if (count < 2 || count > kMostFrames)
     throw UsageError(
-        fmt::format("{}: its animation of {:.4g} seconds has {:.0f} frames, and 2 to {:.0f} are possible: give another --fps, or "
-                    "--frame-count",
-                    file.string(), seconds, count, kMostFrames));
+        fmt::format("{}: at {:g} frames per second, its animation of {:.4g} seconds makes {:.0f}, and a sequence has 2 to {:.0f}: give "
+                    "another --fps, or --frame-count",
+                    file.string(), animation.frames_per_second, seconds, count, kMostFrames));
   if (settings.sequence.frames && !settings.sequence.frames_per_second) animation.frames_per_second = (count - 1) / seconds;
   for (int i = 0; i < int(count); ++i) {
     const double at = settings.sequence.frames ? seconds * i / (count - 1) : i / animation.frames_per_second;

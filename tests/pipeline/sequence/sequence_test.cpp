@@ -247,10 +247,12 @@ TEST_F(SequenceTest, AnAnimationHasAFramePerMoment) {
   EXPECT_EQ(five.frames[3].moment->seconds, 1.5);
   EXPECT_EQ(five.frames_per_second, 2) << "it takes as long as the animation";
   EXPECT_EQ(animation({"frame-count=5", "fps=8"}).frames_per_second, 8) << "it is shown faster";
-  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { animation({"fps=0.1"}); }), "ball.glb: its animation of 2 seconds has 1 frames"));
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { animation({"fps=0.1"}); }),
+                       "ball.glb: at 0.1 frames per second, its animation of 2 seconds makes 1, and"));
   EXPECT_TRUE(contains(refusalOf<InputError>([&] { animation({"animation=Walk"}); }), "has no animation 'Walk'"));
   writeBall({0, 1e6F}, {0, 1});
-  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { animation(); }), "has 24000001 frames, and 2 to 10000 are possible"));
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { animation(); }),
+                       "its animation of 1e+06 seconds makes 24000001, and a sequence has 2 to 10000"));
 }
 
 // Its radius is 1 + the weight.
