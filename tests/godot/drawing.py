@@ -61,6 +61,18 @@ def triangles_of(asset, number):
     return np.frombuffer(asset.binary, kind, accessor["count"], at).reshape(-1, 3).astype(np.uint32)
 
 
+def append_indices(asset, values):
+    """The number of a new accessor."""
+    asset.binary += b"\0" * (-len(asset.binary) % 4)
+    document = asset.document
+    document["bufferViews"].append({"buffer": 0, "byteOffset": len(asset.binary), "byteLength": values.nbytes})
+    document["accessors"].append({"bufferView": len(document["bufferViews"]) - 1, "componentType": 5125,
+                                  "count": len(values), "type": "SCALAR"})
+    asset.binary += values.tobytes()
+    document["buffers"][0]["byteLength"] = len(asset.binary)
+    return len(document["accessors"]) - 1
+
+
 def replaced(text, *changes):
     for old, new in changes:
         if old not in text:
@@ -143,7 +155,7 @@ def as_godot3(shader):
     shader = re.sub(r" : filter_\w+, repeat_disable;", ";", shader)
     shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
     for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"),
-                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2")):
+                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2"), ("CUSTOM0.xy", "UV")):
         shader = shader.replace(old, new)
     return shader
 
@@ -220,6 +232,15 @@ file = "{asset}.glb"
 """
 
 
+def view_of(run, folder, look):
+    """The camera of scene.toml, from the page of `view`."""
+    run("view", "--scene", "scene.toml", "--look", look, "-o", "page.html")
+    [shown] = json.loads(re.search('id="page">(.*)</script>', (folder / "page.html").read_text())[1])["scenes"]
+    camera, towards = shown["camera"], direction((shown["view"]["azimuth"], shown["view"]["elevation"]))
+    away = camera["distance"] * max(1, camera["aspect"] * SIZE[1] / SIZE[0])
+    return {"eye": [at + away * d for at, d in zip(camera["at"], towards)], "target": camera["at"], "fov": camera["fov"]}
+
+
 class Bench:
     """A project with the kit and two assets, and what preview draws of scenes with them."""
 
@@ -246,12 +267,7 @@ class Bench:
         (self.folder / "scene.toml").write_text(scene)
         size = "x".join(map(str, SIZE))
         self.run("preview", "--scene", "scene.toml", "--look", "painted", "--size", size, "-o", "truth.png")
-        self.run("view", "--scene", "scene.toml", "--look", "painted", "-o", "page.html")
-        [shown] = json.loads(re.search('id="page">(.*)</script>', (self.folder / "page.html").read_text())[1])["scenes"]
-        camera, towards = shown["camera"], direction((shown["view"]["azimuth"], shown["view"]["elevation"]))
-        away = camera["distance"] * max(1, camera["aspect"] * SIZE[1] / SIZE[0])
-        view = {"eye": [at + away * d for at, d in zip(camera["at"], towards)], "target": camera["at"], "fov": camera["fov"]}
-        return picture(self.folder / "truth.png"), view
+        return picture(self.folder / "truth.png"), view_of(self.run, self.folder, "painted")
 
     def add(self, name, view, asset="cloud", **more):
         """A scene to draw (tests/godot/scenes.gd has the keys)."""
