@@ -6,6 +6,11 @@
 
 // The picture of the keys: linear values, without filter and mip levels.
 uniform sampler2D sequence_keys;
+
+// GLES3 converts what texelFetch reads, as if it were a colour of sRGB.
+vec3 sequenceKey(vec2 at) {
+	return textureLod(sequence_keys, (at + 0.5) / vec2(textureSize(sequence_keys, 0)), 0.0).rgb;
+}
 #include "godot_sequence.gdshaderinc"
 
 uniform vec2 shown = vec2(0.0, 1.0);    // between which thresholds of the dither it is drawn

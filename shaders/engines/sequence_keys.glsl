@@ -1,5 +1,7 @@
-// Reads the keys of a sequence from their picture. Needs sequence.glsl, and before it the uniforms
-//   sampler2D sequence_keys: the nearest texel, without mip levels, linear values; row 0 is the first row of the PNG
+// Reads the keys of a sequence from their picture. Needs sequence.glsl, and before it
+//   vec3 sequenceKey(vec2 at), a function: the values of a texel of the picture, 0 to 1, without any conversion. 'at' are its column and
+//     its row, from the first row of the PNG on
+// and the uniforms
 //   vec3 sequence_low, sequence_high: the box; float sequence_densest: density_max of the sequence
 //   vec3 sequence_place: of the segment its first row, the rows that its vertices need, and how many keys it has
 //   vec2 sequence_moment: the last key that is not after the moment, and how far the moment is on its way to the next one, 0 to 1
@@ -7,7 +9,7 @@
 // The bytes of a vertex in a block of a key.
 vec3 keyBytes(vec2 own, float block, float key) {
   vec2 at = sequenceTexel(own, sequence_place, block, key);
-  return sequenceBytes(texelFetch(sequence_keys, ivec2(at), 0).rgb);
+  return sequenceBytes(sequenceKey(at));
 }
 
 // The vertex at the moment: returns its position, and gives its normal and its lobe. 'own': TEXCOORD_2 of the vertex.

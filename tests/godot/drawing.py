@@ -61,18 +61,6 @@ def triangles_of(asset, number):
     return np.frombuffer(asset.binary, kind, accessor["count"], at).reshape(-1, 3).astype(np.uint32)
 
 
-def append_indices(asset, values):
-    """The number of a new accessor."""
-    asset.binary += b"\0" * (-len(asset.binary) % 4)
-    document = asset.document
-    document["bufferViews"].append({"buffer": 0, "byteOffset": len(asset.binary), "byteLength": values.nbytes})
-    document["accessors"].append({"bufferView": len(document["bufferViews"]) - 1, "componentType": 5125,
-                                  "count": len(values), "type": "SCALAR"})
-    asset.binary += values.tobytes()
-    document["buffers"][0]["byteLength"] = len(asset.binary)
-    return len(document["accessors"]) - 1
-
-
 def replaced(text, *changes):
     for old, new in changes:
         if old not in text:
@@ -102,9 +90,9 @@ def has_errors(said):
     return "SHADER ERROR" in said or "SCRIPT ERROR" in said or "Parse Error" in said
 
 
-def import_assets(project, names):
+def import_assets(project, names, driver="GLES2"):
     """Godot imports the assets with the kit's script."""
-    said = godot(project, "--editor", "--quit")  # Godot 3.2 ends with an error, after the import
+    said = godot(project, "--editor", "--quit", driver=driver)  # Godot 3.2 ends with an error, after the import
     materials = [(project / f"{name}_cloud.tres").exists() for name in names]
     judge(all(materials) and not has_errors(said), "Godot imports the assets with the kit's script", said)
 
@@ -155,7 +143,8 @@ def as_godot3(shader):
     shader = re.sub(r" : filter_\w+, repeat_disable;", ";", shader)
     shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
     for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"),
-                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2"), ("CUSTOM0.xy", "UV")):
+                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2"), ("CUSTOM0.xy", "UV"),
+                     ("texelFetch(sequence_keys, ivec2(at), 0)", "textureLod(sequence_keys, (at + 0.5) / vec2(textureSize(sequence_keys, 0)), 0.0)")):
         shader = shader.replace(old, new)
     return shader
 
@@ -209,6 +198,18 @@ def fade_between(x, start, end):
     return t * t * (3 - 2 * t)
 
 
+# What the image chain adds to a scene is left out.
+BARE = """[fog]
+density = 0
+[chain]
+near_width = 0
+far_width = 0
+depth_spread = 0
+swirl_strength = 0
+dark = 1
+detail_shrink = 0
+detail_darkening = 0
+"""
 SIZE = (360, 240)
 BACKGROUND = [0.2, 0.35, 0.6]
 SUN = (130, 28)

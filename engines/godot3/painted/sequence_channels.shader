@@ -1,7 +1,13 @@
 // The same of a sequence as channels.shader of other clouds. Made by cloudbake @version@.
 #include "godot_channels.gdshaderinc"
 
+// The picture of the keys: linear values, without filter and mip levels.
 uniform sampler2D sequence_keys;
+
+// GLES3 converts what texelFetch reads, as if it were a colour of sRGB.
+vec3 sequenceKey(vec2 at) {
+	return textureLod(sequence_keys, (at + 0.5) / vec2(textureSize(sequence_keys, 0)), 0.0).rgb;
+}
 #include "godot_sequence.gdshaderinc"
 
 void vertex() {
