@@ -7,7 +7,8 @@ import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { TransformNode } from '@babylonjs/core/Meshes/transformNode.js';
 import { settingsOf } from './asset.js';
 import { CloudMaterial } from './babylon.js';
-import { emptyKey, setFading, shownAt, shownSegments, writeKeyAt } from './sequence.js';
+import { emptyKey, shownAt, shownSegments, writeKeyAt } from './sequence.js';
+import { setFading } from './sequence_fade.js';
 import { readSequence } from './sequence_file.js';
 
 // The names of the numbers of a key in a mesh of Babylon.js, and how many a vertex has.

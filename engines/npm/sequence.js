@@ -1,8 +1,6 @@
 // Clouds that change (`cloudbake sequence`), for any engine: which segments are seen at a time, their keys, and what is between two keys.
 // docs/sequences.md of cloudbake describes the file.
 
-import { isSoftened } from './asset.js';
-
 export const CURE = 'take the file that `cloudbake sequence` wrote';
 const STEPS = 65535;
 
@@ -59,33 +57,17 @@ export function seenAt({ segments, framesPerSecond, loops, period }, seconds) {
 export const shownSegments = ({ segments, loops }) => loops && segments.length === 1 ? [segments[0], segments[0]] : segments;
 
 /**
- * Which of these meshes are drawn at a time: their numbers, their frames, and from and to which threshold of the dither. In a fade the later
+ * Which of these meshes are drawn at a time: their numbers, their frames, and between which thresholds of the dither. In a fade the later
  * one takes the pixels below its weight.
  * @param {Sequence} sequence @param {number} seconds @returns {{ part: number, frame: number, shown: [number, number] }[]}
  */
 export function shownAt(sequence, seconds) {
-  const seen = seenAt(sequence, seconds).filter(({ weight }) => weight > 0), [{ segment: first }] = seen, { segment, frame, weight } = seen.at(-1);
+  const seen = seenAt(sequence, seconds).filter(one => one.weight > 0), [{ segment: first }] = seen;
+  const { segment, frame, weight } = seen.at(-1);
   /** @type {{ part: number, frame: number, shown: [number, number] }} */
   const later = { part: segment, frame, shown: [0, weight] };
   if (seen.length === 1) return [{ ...later, shown: [0, 1] }];
   return [{ part: first === segment ? 1 : first, frame: seen[0].frame, shown: [weight, 1] }, later];
-}
-
-// Of a material: its sequences that fade, and whether it was soft before. Only soft materials leave out pixels.
-/** @type {WeakMap<object, { fading: Set<object>, was_soft: boolean }>} */
-const fades = new WeakMap();
-
-export function setFading(material, sequence, is_fading) {
-  const known = fades.get(material);
-  if (is_fading) {
-    const { fading } = known ?? { fading: new Set() };
-    if (!known) fades.set(material, { fading, was_soft: material.soft });
-    fading.add(sequence);
-    material.soft = true;
-  } else if (known?.fading.delete(sequence) && known.fading.size === 0) {
-    fades.delete(material);
-    material.soft = known.was_soft || isSoftened(material);
-  }
 }
 
 /** @param {number} vertices @returns {Key} */

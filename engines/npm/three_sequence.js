@@ -1,8 +1,8 @@
 // Clouds that change (`cloudbake sequence`), in three.js.
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh, Sphere, Vector3 } from 'three';
 import { settingsOf } from './asset.js';
-import { emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf, setFading, shownAt, shownSegments, writeKeyAt }
-  from './sequence.js';
+import { emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf, shownAt, shownSegments, writeKeyAt } from './sequence.js';
+import { setFading } from './sequence_fade.js';
 import { CloudMaterial } from './three.js';
 
 // The names of the numbers of a key in a mesh of three.js, in a file, and how many a vertex has.

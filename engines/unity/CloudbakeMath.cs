@@ -51,8 +51,8 @@ public static class CloudbakeMath
     }
 
     // The parts that are seen at a frame. `frames` are those of the keys of each; there is one for each segment, and a second one for the
-    // only segment of a loop. `period` is 0 of a sequence that does not loop, which stays at its last frame. In a fade the later one has the
-    // pixels below its weight, and the earlier one the others.
+    // only segment of a loop. `period` is 0 of a sequence that does not loop, which stays at its last frame. In a fade the later one has
+    // the pixels below its weight, and the earlier one the others.
     public static SeenPart[] Seen(float[][] frames, int segments, double frame, float period)
     {
         var last = segments - 1;

@@ -1,5 +1,5 @@
-// cloudbake @version@: the vertices of a sequence (`cloudbake sequence --as picture`) in Unity, which CloudbakeSequence.cs plays. Include it
-// after the declarations of its uniforms, as Cloudbake.shader does by CloudbakeLook.hlsl.
+// cloudbake @version@: the vertices of a sequence (`cloudbake sequence --as picture`) in Unity, which CloudbakeSequence.cs plays.
+// CloudbakeLook.hlsl includes it after the uniforms that it needs.
 #ifndef CLOUDBAKE_SEQUENCE_INCLUDED
 #define CLOUDBAKE_SEQUENCE_INCLUDED
 

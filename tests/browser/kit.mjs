@@ -208,8 +208,8 @@ function evaluate({ text, attributes, cases }) {
 
 // The programs of the ShaderLab file, one per pipeline and light, with stand-ins for Unity's libraries and what multi_compile switches on.
 function compileUnity() {
-  const text = kit('unity/Cloudbake.shader'), look = kit('unity/CloudbakeLook.hlsl').replace(/^#include "(Cloudbake(Lobe|Sequence).hlsl)"$/mg,
-    (_, name) => kit(`unity/${name}`));
+  const text = kit('unity/Cloudbake.shader'), look = kit('unity/CloudbakeLook.hlsl')
+    .replace(/^#include "(Cloudbake(Lobe|Sequence).hlsl)"$/mg, (_, name) => kit(`unity/${name}`));
   const [, shared] = text.match(/CGINCLUDE\n(.*?)ENDCG/s);
   const stub = name => readFileSync(join(source, `tests/unity/${name}_stub.hlsl`), 'utf8');
   const programs = [...[...text.matchAll(/HLSLPROGRAM\n(.*?)ENDHLSL/gs)].map(([, own]) => [stub('urp') + own, 'vertex']),

@@ -69,7 +69,8 @@ function testScripts(programs) {
 function testSequence(program) {
   run('sequence', 'humilis', '--vary', 'size=0.5:0.8', '--frame-count', '8', '--vertices', '200', '--voxels', '30', '--fade', '2',
     '--change', '0.5', '--loop', '--as', 'picture', '-o', 'smoke.glb');
-  const file = join(folder, 'smoke.glb'), { json } = chunksOf(readFileSync(file)), sequence = sequenceOf(json), { segments, box } = sequence;
+  const file = join(folder, 'smoke.glb'), { json } = chunksOf(readFileSync(file));
+  const sequence = sequenceOf(json), { segments, box } = sequence;
   const frames = Array.from({ length: 29 }, (_, i) => i * sequence.period / 13);
   const read = answer(program, 'sequence', file, ...frames.map(frame => String(frame / sequence.framesPerSecond)));
   const [low, high] = box, view = json.bufferViews[json.images[0].bufferView];

@@ -186,8 +186,8 @@ async function pictures(kit, page, engine, name, sequence, frames, options) {
     const { view, truth, linear, without, inside } = await subjectOf(kit, page, name, sequence, frame / framesPerSecond, options);
     const all = compare(bits(linear), truth, () => true), own = compare(bits(linear), truth, inside);
     demand(kit.seenAt(sequence, view.seconds).length === 1 && all.near >= NEAR && own.near >= NEAR && own.all > 10000,
-      `${engine}, ${name} at frame ${frame}: ${percent(all.near)} of values are within 2 of preview's, ${percent(own.near)} of the ${own.all} of ` +
-      `the cloud, off by ${own.largest.toFixed(1)} at most`);
+      `${engine}, ${name} at frame ${frame}: ${percent(all.near)} of values are within 2 of preview's, ${percent(own.near)} of the ` +
+      `${own.all} of the cloud, off by ${own.largest.toFixed(1)} at most`);
     if (frame !== frames[0]) continue;
     const mistakes = { 'a third of a frame later': { seconds: (frame + 1 / 3) / framesPerSecond },
       'the lobes of the first key': { tamper: 'first lobes' } };

@@ -143,8 +143,9 @@ def as_godot3(shader):
     shader = re.sub(r" : filter_\w+, repeat_disable;", ";", shader)
     shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
     for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"),
-                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2"), ("CUSTOM0.xy", "UV"),
-                     ("texelFetch(sequence_keys, ivec2(at), 0)", "textureLod(sequence_keys, (at + 0.5) / vec2(textureSize(sequence_keys, 0)), 0.0)")):
+                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2"),
+                     ("CUSTOM0.xy", "UV"), ("texelFetch(sequence_keys, ivec2(at), 0)",
+                                            "textureLod(sequence_keys, (at + 0.5) / vec2(textureSize(sequence_keys, 0)), 0.0)")):
         shader = shader.replace(old, new)
     return shader
 

@@ -80,7 +80,7 @@ public static class Program
             return "[" + string.Join(", ", player.parts.Select((part, i) => part.renderer.enabled
                 ? "[" + i + ", " + part.renderer.block["sequence_moment"] + ", " + part.renderer.block["_SequenceShown"] + "]" : "")
                 .Where(text => text != "")) + "]";
-        });
+        }).ToArray();
         return "{\"picture\": " + CloudbakeAsset.PictureOf(bytes, "keys").Length + ", \"box\": "
             + MaterialPropertyBlock.Text(box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z)
             + ", \"ends\": " + Ends(player) + ", \"shown\": [" + string.Join(", ", shown) + "]}";
