@@ -6,15 +6,17 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/impostor/impostor_file.h"
+#include "io/gltf/sequence/sequence_file.h"
 #include "pipeline/kit/engine_kit.h"
 
 namespace cloudbake {
 
 namespace {
 
-AssetInfo infoOf(const std::filesystem::path& asset, const ReadSettings& settings, Warnings& warnings) {
+AssetInfo infoOf(const std::filesystem::path& asset, const std::string& engine, const ReadSettings& settings, Warnings& warnings) {
   const std::string bytes = readFileBytes(asset);
   if (isImpostor(bytes)) return boxWithImpostor(decodeImpostor(asset, bytes, settings.memory_limit)).info;
+  if (playsSequences(engine) && isSequence(bytes)) return decodeSequence(asset, bytes, settings.memory_limit).info;
   const StoredAsset stored = readStoredAsset(asset, bytes, warnings, settings);
   if (!stored.info_fault.empty()) throw InputError(asset.string(), stored.info_fault + ", or give no asset");
   return *stored.info;
@@ -36,7 +38,7 @@ ExitCode runShader(const CommandLine& line) {
   report.command = "shader";
   report.input = line.inputs.back().string();
   report.output = settings.output.file.string();
-  report.info = has_asset ? infoOf(line.inputs.back(), settings.source.read, report.warnings) : defaultAssetInfo();
+  report.info = has_asset ? infoOf(line.inputs.back(), line.inputs[0].string(), settings.source.read, report.warnings) : defaultAssetInfo();
   enforceStrict(settings.run.strict, report);
   Json names = Json::array();
   for (const EngineFile& file : engineFiles(line.inputs[0].string(), report.info, sceneOf(settings))) {

@@ -88,7 +88,7 @@ func _find_clouds():
 		for material in _materials_of(node):
 			if not material in _shaders:
 				_shaders[material] = material.shader
-				material.shader = _shader("channels")
+				material.shader = _shader("sequence_channels" if node.has_meta("sequence_segment") else "channels")
 	if found != _clouds:
 		_clouds = found
 		_measured = _measure()

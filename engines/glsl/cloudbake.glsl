@@ -34,6 +34,8 @@ const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 
 #include "impostor.glsl"
 
+#include "sequence.glsl"
+
 #include "harmonics.glsl"
 
 #include "sky.glsl"

@@ -1,7 +1,8 @@
 # Gives the meshes of a baked GLB their shader. Choose this script as "Custom Script" in the Import dock.
 #
 # The material is stored beside the asset, NAME.glb -> NAME_cloud.tres, so that you can edit it: later imports change only k, b and sigma.
-# An impostor (`cloudbake impostor`) gets a square with the shader cloudbake_impostor, and its pictures are stored beside it.
+# An impostor (`cloudbake impostor`) gets a square with the shader cloudbake_impostor, and its pictures are stored beside it. A sequence
+# (`cloudbake sequence --as picture`) gets the shader and the script cloudbake_sequence, and its picture is stored beside it.
 # Import settings that keep the lobes: Meshes > Compress off, Ensure Tangents off, Light Baking not "Gen Lightmaps" (which replaces UV2).
 tool
 extends EditorScenePostImport
@@ -11,6 +12,7 @@ const SHORT = 5122
 const UNSIGNED_SHORT = 5123
 const GLB = 0x46546C67
 const FLOAT_MAX = 3.4028234e38  # shaders have 32 bits
+const KEY_COLUMNS = 1024    # of the picture of a sequence
 
 
 func post_import(scene):
@@ -20,12 +22,15 @@ func post_import(scene):
 	if info.get("layout") == "lobe-impostor":
 		_set_impostor(scene, _square(info), _impostor_material(info, document, file))
 		return scene
+	if info.get("layout") == "lobe-sequence":
+		_set_sequence(scene, info, document, file)
+		return scene
 	var first_set = int(info.get("uv_sets", [0, 1])[0])
 	if info.empty():
 		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
 	# Godot stores the sets that it reads itself as half floats, which are too coarse for packed lobes.
 	var is_packed = info.get("layout") == "lobe-packed"
-	if (first_set != 0 or is_packed) and not _move_sets(scene, document, file, first_set):
+	if (first_set != 0 or is_packed) and not _move_sets(scene, document, file, [first_set, first_set + 1]):
 		push_error("%s has its lobes in the UV sets %d and %d. They cannot be brought to UV and UV2: the clouds get no shader." %
 				[get_source_file(), first_set, first_set + 1])
 		return scene
@@ -79,14 +84,14 @@ func _impostor_material(info, document, file):
 		last_level += 1
 	material.set_shader_param("impostor_atlas", Plane(info.views, info.frame, last_level, info.thickest))
 	for name in ["lobe", "rest"]:
-		material.set_shader_param("impostor_" + name, _picture(name, document, file))
+		material.set_shader_param("impostor_" + name, _picture(name, document, file, Texture.FLAG_FILTER | Texture.FLAG_MIPMAPS))
 	ResourceSaver.save(path, material)
 	material.take_over_path(path)
 	return material
 
 
-# A picture of the atlas, with mip levels and clamped.
-func _picture(name, document, file):
+# A picture of the asset, clamped.
+func _picture(name, document, file, flags):
 	var texture = ImageTexture.new()
 	for picture in document.images:
 		if picture.get("name") != name:
@@ -96,13 +101,14 @@ func _picture(name, document, file):
 		file.seek(28 + file.get_32() + int(view.get("byteOffset", 0)))
 		var image = Image.new()
 		image.load_png_from_buffer(file.get_buffer(int(view.byteLength)))
-		image.generate_mipmaps()
-		texture.create_from_image(image, Texture.FLAG_FILTER | Texture.FLAG_MIPMAPS)
+		if flags & Texture.FLAG_MIPMAPS:
+			image.generate_mipmaps()
+		texture.create_from_image(image, flags)
 		var path = "%s_%s.res" % [get_source_file().get_basename(), name]
 		ResourceSaver.save(path, texture)
 		texture.take_over_path(path)
 		return texture
-	push_error("%s has lost the picture '%s' of its atlas: take the file that `cloudbake impostor` wrote." % [get_source_file(), name])
+	push_error("%s has lost its picture '%s': take the file that cloudbake wrote." % [get_source_file(), name])
 	return texture
 
 
@@ -142,18 +148,69 @@ func _set_material(node, material, switch_pixels):
 		_set_material(child, material, switch_pixels)
 
 
-# Godot 3 reads the UV sets 0 and 1 alone. This reads a higher pair from the GLB and stores it in their place.
-func _move_sets(scene, document, file, first_set):
-	var shown = []  # the meshes of the nodes, in the order of the scene
+# The keys are in the picture, and each vertex has its texel in UV. Segments are shown and hidden by cloudbake_sequence.gd.
+func _set_sequence(scene, info, document, file):
+	if info.sequence.keys != "picture":
+		push_error("%s has its keys as morph targets: write it with `cloudbake sequence --as picture`." % get_source_file())
+		return
+	if not _move_sets(scene, document, file, [2, 2]):
+		push_error("%s has lost its UV set 2: take the file that `cloudbake sequence` wrote." % get_source_file())
+		return
+	var low = info.sequence.box[0]
+	var high = info.sequence.box[1]
+	var box = AABB(Vector3(low[0], low[1], low[2]), Vector3(high[0] - low[0], high[1] - low[1], high[2] - low[2]))
+	var material = _sequence_material(info, box, document, file)
+	var numbers = []
+	_collect_meshes(document, document.scenes[int(document.get("scene", 0))].get("nodes", []), numbers)
+	var instances = []
+	_collect_instances(scene, instances)
+	for i in info.sequence.segments.size():
+		var segment = info.sequence.segments[i]
+		_set_segment(instances[numbers.find(int(segment.mesh))], i, segment, box, material)
+	for child in scene.get_children():
+		if child is AnimationPlayer:    # it would show and hide the segments, for programs without fades
+			scene.remove_child(child)
+			child.free()
+	scene.set_script(load(get_script().resource_path.get_base_dir() + "/cloudbake_sequence.gd"))
+	scene.set_meta("sequence", info.sequence)
+
+
+func _set_segment(node, number, segment, box, material):
+	var rows = ceil(node.mesh.surface_get_array_len(0) / float(KEY_COLUMNS))
+	node.set_meta("sequence_segment", number)
+	node.set_meta("sequence_place", Vector3(segment.first_row, rows, segment.frames.size()))
+	node.transform = Transform(Basis(), node.translation)    # the file scales what is not seen by 0
+	node.visible = number == 0
+	node.mesh.custom_aabb = box
+	node.mesh.surface_set_material(0, material)
+	node.set_surface_material(0, null)
+	node.add_to_group("cloudbake", true)
+
+
+func _sequence_material(info, box, document, file):
+	var material = _material(info)
+	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake_sequence.shader")
+	material.set_shader_param("sequence_keys", _picture("keys", document, file, 0))
+	material.set_shader_param("sequence_low", box.position)
+	material.set_shader_param("sequence_high", box.end)
+	material.set_shader_param("sequence_densest", info.sequence.density_max)
+	ResourceSaver.save(material.resource_path, material)
+	return material
+
+
+# Godot 3 reads the UV sets 0 and 1 alone. This reads two others from the GLB and stores them in their place.
+func _move_sets(scene, document, file, sets):
+	var shown = []  # the numbers of the meshes of the nodes, in the order of the scene
 	_collect_meshes(document, document.scenes[int(document.get("scene", 0))].get("nodes", []), shown)
 	var instances = []
 	_collect_instances(scene, instances)
 	if document.has("skins") or shown.size() != instances.size():
 		return false
 	for i in shown.size():
-		if shown[i].primitives.size() != instances[i].mesh.get_surface_count():
+		var primitives = document.meshes[shown[i]].primitives
+		if primitives.size() != instances[i].mesh.get_surface_count():
 			return false
-		if not _move_sets_of(instances[i].mesh, shown[i].primitives, document, file, first_set):
+		if not _move_sets_of(instances[i].mesh, primitives, document, file, sets):
 			return false
 	return true
 
@@ -162,7 +219,7 @@ func _collect_meshes(document, nodes, found):
 	for number in nodes:
 		var node = document.nodes[int(number)]
 		if node.has("mesh"):
-			found.append(document.meshes[int(node.mesh)])
+			found.append(int(node.mesh))
 		_collect_meshes(document, node.get("children", []), found)
 
 
@@ -173,12 +230,12 @@ func _collect_instances(node, found):
 		_collect_instances(child, found)
 
 
-func _move_sets_of(mesh, primitives, document, file, first_set):
+func _move_sets_of(mesh, primitives, document, file, sets):
 	var surfaces = []
 	for s in primitives.size():
 		var arrays = mesh.surface_get_arrays(s)
 		for i in 2:
-			var values = _uv_set(document, file, primitives[s].attributes.get("TEXCOORD_%d" % (first_set + i)))
+			var values = _uv_set(document, file, primitives[s].attributes.get("TEXCOORD_%d" % sets[i]))
 			if values.size() != arrays[Mesh.ARRAY_VERTEX].size():
 				return false
 			arrays[Mesh.ARRAY_TEX_UV if i == 0 else Mesh.ARRAY_TEX_UV2] = values

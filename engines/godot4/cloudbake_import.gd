@@ -2,13 +2,15 @@
 #
 # The material is stored beside the asset, NAME.glb -> NAME_cloud.tres, so that you can edit it: later imports change only k, b, sigma
 # and the UV sets. An impostor (`cloudbake impostor`) gets a square with the shader cloudbake_impostor, and its pictures are stored beside
-# it. Import settings that keep the lobes: Meshes > Force Disable Compression on, Ensure Tangents off, Light Baking not
-# "Static Lightmaps" (which replaces UV2).
+# it. A sequence (`cloudbake sequence --as picture`) gets the shader and the script cloudbake_sequence, and its picture is stored beside it.
+# Import settings that keep the lobes: Meshes > Force Disable Compression on, Ensure Tangents off, Light Baking not "Static Lightmaps" (which
+# replaces UV2). A sequence also needs Generate LODs off.
 @tool
 extends EditorScenePostImport
 
 const GLB = 0x46546C67
 const FLOAT_MAX = 3.4028234e38  # shaders have 32 bits
+const KEY_COLUMNS = 1024    # of the picture of a sequence
 # What a surface has if it has a UV set: 0, 1 and up.
 const FORMATS = [
 	Mesh.ARRAY_FORMAT_TEX_UV, Mesh.ARRAY_FORMAT_TEX_UV2, Mesh.ARRAY_FORMAT_CUSTOM0, Mesh.ARRAY_FORMAT_CUSTOM0,
@@ -21,6 +23,9 @@ func _post_import(scene):
 	var info = document.get("asset", {}).get("extras", {}).get("cloudbake", {})
 	if info.get("layout") == "lobe-impostor":
 		_set_impostor(scene, _square(info), _impostor_material(info, document))
+		return scene
+	if info.get("layout") == "lobe-sequence":
+		_set_sequence(scene, info, document)
 		return scene
 	if info.is_empty():
 		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
@@ -77,14 +82,14 @@ func _impostor_material(info, document):
 		last_level += 1
 	material.set_shader_parameter("impostor_atlas", Vector4(info.views, info.frame, last_level, info.thickest))
 	for picture in ["lobe", "rest"]:
-		material.set_shader_parameter("impostor_" + picture, _picture(picture, document))
+		material.set_shader_parameter("impostor_" + picture, _picture(picture, document, true))
 	ResourceSaver.save(material, path)
 	material.take_over_path(path)
 	return material
 
 
-# A picture of the atlas, with mip levels.
-func _picture(wanted, document):
+# A picture of the asset.
+func _picture(wanted, document, has_levels):
 	for picture in document.images:
 		if picture.get("name") != wanted:
 			continue
@@ -94,13 +99,14 @@ func _picture(wanted, document):
 		file.seek(28 + file.get_32() + int(view.get("byteOffset", 0)))
 		var image = Image.new()
 		image.load_png_from_buffer(file.get_buffer(int(view.byteLength)))
-		image.generate_mipmaps()
+		if has_levels:
+			image.generate_mipmaps()
 		var texture = ImageTexture.create_from_image(image)
 		var path = "%s_%s.res" % [get_source_file().get_basename(), wanted]
 		ResourceSaver.save(texture, path)
 		texture.take_over_path(path)
 		return texture
-	push_error("%s has lost the picture '%s' of its atlas: take the file that `cloudbake impostor` wrote." % [get_source_file(), wanted])
+	push_error("%s has lost its picture '%s': take the file that cloudbake wrote." % [get_source_file(), wanted])
 	return null
 
 
@@ -137,3 +143,65 @@ func _set_material(node, material, format, switch_pixels):
 				node.set_meta("switch_pixels", switch_pixels)    # of a level of detail; cloudbake_levels.gd reads it
 	for child in node.get_children():
 		_set_material(child, material, format, switch_pixels)
+
+
+# The keys are in the picture, and each vertex has its texel in CUSTOM0. Segments are shown and hidden by cloudbake_sequence.gd.
+func _set_sequence(scene, info, document):
+	if info.sequence.keys != "picture":
+		push_error("%s has its keys as morph targets: write it with `cloudbake sequence --as picture`." % get_source_file())
+		return
+	var low = info.sequence.box[0]
+	var high = info.sequence.box[1]
+	var box = AABB(Vector3(low[0], low[1], low[2]), Vector3(high[0] - low[0], high[1] - low[1], high[2] - low[2]))
+	var material = _sequence_material(info, box, document)
+	var numbers = []
+	_collect_meshes(document, document.scenes[int(document.get("scene", 0))].get("nodes", []), numbers)
+	var instances = []
+	_collect_instances(scene, instances)
+	for i in info.sequence.segments.size():
+		var segment = info.sequence.segments[i]
+		_set_segment(instances[numbers.find(int(segment.mesh))], i, segment, box, material)
+	for child in scene.get_children():
+		if child is AnimationPlayer:    # it would show and hide the segments, for programs without fades
+			scene.remove_child(child)
+			child.free()
+	scene.set_script(load(get_script().resource_path.get_base_dir() + "/cloudbake_sequence.gd"))
+	scene.set_meta("sequence", info.sequence)
+
+
+func _set_segment(node, number, segment, box, material):
+	var rows = ceil(node.mesh.surface_get_array_len(0) / float(KEY_COLUMNS))
+	node.set_meta("sequence_segment", number)
+	node.set_meta("sequence_place", Vector3(segment.first_row, rows, segment.frames.size()))
+	node.transform = Transform3D(Basis(), node.position)    # the file scales what is not seen by 0
+	node.visible = number == 0
+	node.mesh.custom_aabb = box
+	node.mesh.surface_set_material(0, material)
+	node.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF    # meshes for shadows have no texels
+	node.add_to_group("cloudbake", true)
+
+
+func _sequence_material(info, box, document):
+	var material = _material(info, 0)
+	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake_sequence.gdshader")
+	material.set_shader_parameter("sequence_keys", _picture("keys", document, false))
+	material.set_shader_parameter("sequence_low", box.position)
+	material.set_shader_parameter("sequence_high", box.end)
+	material.set_shader_parameter("sequence_densest", info.sequence.density_max)
+	ResourceSaver.save(material, material.resource_path)
+	return material
+
+
+func _collect_meshes(document, nodes, found):
+	for number in nodes:
+		var node = document.nodes[int(number)]
+		if node.has("mesh"):
+			found.append(int(node.mesh))
+		_collect_meshes(document, node.get("children", []), found)
+
+
+func _collect_instances(node, found):
+	if node is MeshInstance3D and node.mesh:
+		found.append(node)
+	for child in node.get_children():
+		_collect_instances(child, found)

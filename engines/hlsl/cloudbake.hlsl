@@ -35,6 +35,8 @@ static const float CLOUDBAKE_FOG_PER_UNIT = @fog_per_unit@;
 
 #include "impostor.hlsl"
 
+#include "sequence.hlsl"
+
 // The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
 // the unit vector to the sun. The sky is above, along `up`.
 float2 cloudbakeLight(float2 first, float2 second, float3x3 to_world, float3 to_sun, float3 up) {

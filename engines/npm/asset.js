@@ -55,7 +55,7 @@ function orderOf({ harmonic_order: order = 0 }) {
 
 // The largest d of a packed asset, 0 of another one. A layout of a later version is refused.
 function densityMaxOf({ layout = 'lobe-uv', version = 1, density_max = 0 }, sequences) {
-  if (layout === 'lobe-sequence' && !sequences) throw new Error('the file is a sequence, which CloudSequence plays, in three.js only');
+  if (layout === 'lobe-sequence' && !sequences) throw new Error('the file is a sequence, which CloudSequence plays');
   if (!['lobe-uv', 'lobe-packed', 'lobe-sequence'].includes(layout) || version !== 1)
     throw new Error(`asset.extras.cloudbake has the layout ${layout} ${version}, which this version does not know: bake the asset again`);
   const value = layout === 'lobe-packed' ? density_max : 0;

@@ -1,7 +1,7 @@
 // Clouds that change (`cloudbake sequence`), for any engine: which segments are seen at a time, their keys, and what is between two keys.
 // docs/sequences.md of cloudbake describes the file.
 
-const CURE = 'take the file that `cloudbake sequence` wrote';
+export const CURE = 'take the file that `cloudbake sequence` wrote';
 const STEPS = 65535;
 
 const rising = frames => Array.isArray(frames) && frames.length > 0
@@ -51,6 +51,23 @@ export function seenAt({ segments, framesPerSecond, loops, period }, seconds) {
   if (!before) return [{ segment: now, frame, weight: 1 }];
   const begin = now > 0 ? first(now) : period, weight = (before.frame - begin) / (last(before.segment) - begin);
   return [{ ...before, weight: 1 - weight }, { segment: now, frame, weight }];
+}
+
+/** The segments of the meshes that an engine has: the only segment of a loop, which fades into itself, is there twice. */
+export const shownSegments = ({ segments, loops }) => loops && segments.length === 1 ? [segments[0], segments[0]] : segments;
+
+/**
+ * Which of these meshes are drawn at a time: their numbers, their frames, and between which thresholds of the dither. In a fade the later
+ * one takes the pixels below its weight.
+ * @param {Sequence} sequence @param {number} seconds @returns {{ part: number, frame: number, shown: [number, number] }[]}
+ */
+export function shownAt(sequence, seconds) {
+  const seen = seenAt(sequence, seconds).filter(one => one.weight > 0), [{ segment: first }] = seen;
+  const { segment, frame, weight } = seen.at(-1);
+  /** @type {{ part: number, frame: number, shown: [number, number] }} */
+  const later = { part: segment, frame, shown: [0, weight] };
+  if (seen.length === 1) return [{ ...later, shown: [0, 1] }];
+  return [{ part: first === segment ? 1 : first, frame: seen[0].frame, shown: [weight, 1] }, later];
 }
 
 /** @param {number} vertices @returns {Key} */

@@ -1,7 +1,8 @@
 // Clouds that change (`cloudbake sequence`), in three.js.
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh, Sphere, Vector3 } from 'three';
-import { isSoftened, settingsOf } from './asset.js';
-import { emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, seenAt, sequenceOf, writeKeyAt } from './sequence.js';
+import { settingsOf } from './asset.js';
+import { emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf, shownAt, shownSegments, writeKeyAt } from './sequence.js';
+import { setFading } from './sequence_fade.js';
 import { CloudMaterial } from './three.js';
 
 // The names of the numbers of a key in a mesh of three.js, in a file, and how many a vertex has.
@@ -51,23 +52,6 @@ async function segmentOf(parser, sequence, segment, picture) {
   return { ...segment, keys, ...boundsOf(keys), index: await parser.getDependency('accessor', primitive.indices) };
 }
 
-// Of a material: its sequences that fade, and whether it was soft before. Only soft materials leave out pixels.
-/** @type {WeakMap<CloudMaterial, { fading: Set<object>, was_soft: boolean }>} */
-const fades = new WeakMap();
-
-function setFading(material, sequence, is_fading) {
-  const known = fades.get(material);
-  if (is_fading) {
-    const { fading } = known ?? { fading: new Set() };
-    if (!known) fades.set(material, { fading, was_soft: material.soft });
-    fading.add(sequence);
-    material.soft = true;
-  } else if (known?.fading.delete(sequence) && known.fading.size === 0) {
-    fades.delete(material);
-    material.soft = known.was_soft || isSoftened(material);
-  }
-}
-
 export class CloudSequence extends Group {
   // From what GLTFLoader returns.
   static async of(/** @type {import('three/addons/loaders/GLTFLoader.js').GLTF} */ { parser, userData }) {
@@ -83,7 +67,7 @@ export class CloudSequence extends Group {
     super();
     this.sequence = sequence;
     this.material = material;
-    this.parts = sequence.segments.map(segment => {
+    this.parts = shownSegments(sequence).map(segment => {
       const { keys: [{ positions }], frames: [first], index, box, sphere } = segment;
       const key = emptyKey(positions.length / 3), geometry = new BufferGeometry().setIndex(index);
       writeKeyAt(segment, first, key);
@@ -92,7 +76,7 @@ export class CloudSequence extends Group {
       Object.assign(geometry, { boundingBox: box.clone(), boundingSphere: sphere.clone() });
       const mesh = new Mesh(geometry, material);
       this.add(mesh);
-      return { mesh, key, frame: -1 };
+      return { mesh, segment, key, frame: -1 };
     });
     this.update(0);
   }
@@ -101,19 +85,18 @@ export class CloudSequence extends Group {
   get duration() { return this.sequence.period / this.sequence.framesPerSecond; }
 
   update(seconds) {
-    const seen = seenAt(this.sequence, seconds).filter(({ weight }) => weight > 0), later = seen.at(-1)?.weight;
+    const all = shownAt(this.sequence, seconds);
     for (const { mesh } of this.parts) mesh.visible = false;
-    seen.forEach(({ segment, frame }, i) => {
-      const part = this.parts[segment], { mesh } = part;
+    for (const { part, frame, shown } of all) {
+      const own = this.parts[part], { mesh } = own;
       mesh.visible = true;
-      // The later one takes the pixels below its weight.
-      mesh.userData.cloudShown = i === seen.length - 1 ? [0, later] : [later, 1];
-      if (part.frame === frame) return;
-      writeKeyAt(this.sequence.segments[segment], frame, part.key);
-      part.frame = frame;
+      mesh.userData.cloudShown = shown;
+      if (own.frame === frame) continue;
+      writeKeyAt(own.segment, frame, own.key);
+      own.frame = frame;
       for (const [, attribute] of ATTRIBUTES) mesh.geometry.attributes[attribute].needsUpdate = true;
-    });
-    setFading(this.material, this, seen.length > 1);
+    }
+    setFading(this.material, this, all.length > 1);
   }
 
   // Another one of the same keys and the same material, which may be at another time.

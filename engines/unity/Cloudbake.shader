@@ -26,6 +26,15 @@ Shader "Cloudbake/Cloud" {
     _SoftDistance ("Before solid things, over which it fades in", Float) = 0
     _NearFade ("Distances where it is gone, and whole", Vector) = (0, 0, 0, 0)
     _FarFade ("Distances where it fades, and is gone", Vector) = (0, 0, 0, 0)
+    [Header(Of a sequence)]
+    [Toggle(CLOUDBAKE_SEQUENCE)] _Sequence ("It is a sequence", Float) = 0
+    [NoScaleOffset] sequence_keys ("Its keys, linear", 2D) = "black" {}
+    sequence_low ("Lowest corner of its box", Vector) = (0, 0, 0, 0)
+    sequence_high ("Highest corner of its box", Vector) = (0, 0, 0, 0)
+    sequence_densest ("Largest d", Float) = 0
+    [HideInInspector] sequence_place ("", Vector) = (0, 1, 1, 0)
+    [HideInInspector] sequence_moment ("", Vector) = (0, 0, 0, 0)
+    [HideInInspector] _SequenceShown ("", Vector) = (0, 1, 0, 0)
   }
 
   SubShader {
@@ -42,6 +51,7 @@ Shader "Cloudbake/Cloud" {
       #pragma multi_compile_instancing
       #pragma multi_compile_fog
       #pragma multi_compile _ LOD_FADE_CROSSFADE
+      #pragma shader_feature_local CLOUDBAKE_SEQUENCE
       #pragma multi_compile _ _ADDITIONAL_LIGHTS_VERTEX _ADDITIONAL_LIGHTS
       #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Core.hlsl"
       #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Lighting.hlsl"
@@ -50,8 +60,12 @@ Shader "Cloudbake/Cloud" {
       struct Attributes {
         float3 position : POSITION;
         float3 normal : NORMAL;
+#ifdef CLOUDBAKE_SEQUENCE
+        float2 texel : TEXCOORD2;
+#else
         float2 first : TEXCOORD@first_set@;
         float2 second : TEXCOORD@second_set@;
+#endif
         UNITY_VERTEX_INPUT_INSTANCE_ID
       };
       struct Varyings {
@@ -84,7 +98,11 @@ Shader "Cloudbake/Cloud" {
         UNITY_SETUP_INSTANCE_ID(input);
         Varyings output = (Varyings)0;
         UNITY_TRANSFER_INSTANCE_ID(input, output);
+#ifdef CLOUDBAKE_SEQUENCE
+        float4 lobe = worldVertex(input.texel, input.position, input.normal);
+#else
         float4 lobe = worldLobe(input.first, input.second);
+#endif
         float3 place = TransformObjectToWorld(input.position);
         output.normal = TransformObjectToWorldNormal(input.normal);
         output.light = sunAndSky(lobe, output.normal, GetMainLight().direction);
@@ -122,8 +140,12 @@ Shader "Cloudbake/Cloud" {
     struct Attributes {
       float4 vertex : POSITION;
       float3 normal : NORMAL;
+#ifdef CLOUDBAKE_SEQUENCE
+      float2 texel : TEXCOORD2;
+#else
       float2 first : TEXCOORD@first_set@;
       float2 second : TEXCOORD@second_set@;
+#endif
       UNITY_VERTEX_INPUT_INSTANCE_ID
     };
     struct Varyings {
@@ -147,7 +169,11 @@ Shader "Cloudbake/Cloud" {
       UNITY_SETUP_INSTANCE_ID(v);
       Varyings output = (Varyings)0;
       UNITY_TRANSFER_INSTANCE_ID(v, output);
+#ifdef CLOUDBAKE_SEQUENCE
+      float4 lobe = worldVertex(v.texel, v.vertex.xyz, v.normal);
+#else
       float4 lobe = worldLobe(v.first, v.second);
+#endif
       output.world = mul(unity_ObjectToWorld, float4(v.vertex.xyz, 1.0)).xyz;
       output.normal = UnityObjectToWorldNormal(v.normal);
       output.light = sunAndSky(lobe, output.normal, towardsLight(output.world));
@@ -180,6 +206,7 @@ Shader "Cloudbake/Cloud" {
       #pragma multi_compile_instancing
       #pragma multi_compile_fog
       #pragma multi_compile _ LOD_FADE_CROSSFADE
+      #pragma shader_feature_local CLOUDBAKE_SEQUENCE
 
       half4 fragment(Varyings input) : SV_Target {
         UNITY_SETUP_INSTANCE_ID(input);
@@ -203,6 +230,7 @@ Shader "Cloudbake/Cloud" {
       #pragma multi_compile_fog
       #pragma multi_compile_fwdadd
       #pragma multi_compile _ LOD_FADE_CROSSFADE
+      #pragma shader_feature_local CLOUDBAKE_SEQUENCE
 
       half4 fragment(Varyings input) : SV_Target {
         UNITY_SETUP_INSTANCE_ID(input);

@@ -8,6 +8,8 @@ CBUFFER_START(UnityPerMaterial)
 float _Exponent, _Bias, _Extinction, _DensityMax, _SunStrength, _HalfLambert, _PhaseShare, _PhaseAsymmetry, _PhaseLimit;
 float _RimStart, _RimEnd, _RimFrequency, _SoftDistance, _AlphaToMask;
 float4 _RimScroll, _NearFade, _FarFade, _AmbientSky, _AmbientGround;
+float4 sequence_low, sequence_high, sequence_place, sequence_moment, _SequenceShown;
+float sequence_densest;
 CBUFFER_END
 Texture2D<float4> _CameraDepthTexture;
 
@@ -15,6 +17,17 @@ Texture2D<float4> _CameraDepthTexture;
 float4 worldLobe(float2 first, float2 second) {
   return lobeInWorld(objectLobe(first, second, _DensityMax), (float3x3)UNITY_MATRIX_M);
 }
+
+#ifdef CLOUDBAKE_SEQUENCE
+#include "CloudbakeSequence.hlsl"
+
+// The same of a sequence, with the position and the normal in object space.
+float4 worldVertex(float2 texel, out float3 position, out float3 normal) {
+  float4 lobe;
+  objectVertex(texel, position, normal, lobe);
+  return lobeInWorld(lobe, (float3x3)UNITY_MATRIX_M);
+}
+#endif
 
 // The shares of the light of sun and sky.
 float2 sunAndSky(float4 lobe, float3 normal, float3 to_sun) {
@@ -42,10 +55,15 @@ float opacityAt(float4 pixel, float3 own_place, float3 normal, float3 from_eye, 
   return opacity * fadeBetween(away, _NearFade.x, _NearFade.y) * fadeBetween(along, _FarFade.y, _FarFade.x);
 }
 
-// Leaves pixels out, unless the samples of a pixel do it. `fade` is unity_LODFade.x: between two levels each has a share of the pixels.
+// Leaves pixels out, unless the samples of a pixel do it. `fade` is unity_LODFade.x: between two levels each has a share of the pixels, and
+// so has each of two segments of a sequence.
 void leaveOut(float4 pixel, float opacity, float fade) {
   float threshold = ditherThreshold(pixel.xy);
   if (_AlphaToMask < 0.5 && opacity <= threshold) discard;
+#ifdef CLOUDBAKE_SEQUENCE
+  float of_segment = ditherThreshold(pixel.xy + 16.0);
+  if (of_segment < _SequenceShown.x || of_segment >= _SequenceShown.y) discard;
+#endif
 #ifdef LOD_FADE_CROSSFADE
   float of_level = ditherThreshold(pixel.xy + 32.0);
   if (fade >= 0.0 ? of_level >= fade : of_level < -fade) discard;

@@ -37,6 +37,13 @@ std::string_view engineOf(const KitFile& file) {
 // The name of a file in the folder of its engine.
 std::string nameIn(const KitFile& file) { return std::string(file.name).substr(engineOf(file).size() + 1); }
 
+// The rows of an engine's description; none of an unknown engine.
+Json descriptionOf(std::string_view engine) {
+  for (const KitFile& file : kitFiles())
+    if (engineOf(file) == engine && nameIn(file) == kDescription) return parseJson(file.text).value();
+  return Json::array();
+}
+
 // A number that every shading language reads as a float.
 std::string floatText(const char* name, float value) {
   if (!std::isfinite(value))
@@ -129,12 +136,13 @@ std::vector<std::string> engineNames() {
 
 std::string engineTitle(std::string_view engine) {
   std::vector<std::string> titles;
-  for (const KitFile& file : kitFiles()) {
-    if (engineOf(file) != engine || nameIn(file) != kDescription) continue;
-    const Json rows = parseJson(file.text).value();
-    for (const Json& row : rows) titles.push_back(row.at("title"));
-  }
+  for (const Json& row : descriptionOf(engine)) titles.push_back(row.at("title"));
   return fmt::format("{}", fmt::join(titles, ", "));
+}
+
+bool playsSequences(std::string_view engine) {
+  const Json rows = descriptionOf(engine);
+  return std::ranges::any_of(rows, [](const Json& row) { return row.value("sequences", false); });
 }
 
 AssetInfo defaultAssetInfo() {

@@ -17,6 +17,9 @@ std::vector<std::string> engineNames();
 /// What people call an engine: "Godot 3"; "three.js, Babylon.js" for files that serve both. `engine` is one of engineNames().
 std::string engineTitle(std::string_view engine);
 
+/// Whether the files of an engine play sequences (io/gltf/sequence), as its engine.json says.
+bool playsSequences(std::string_view engine);
+
 /// A file of the kit as it is written.
 struct EngineFile {
   std::string name;  ///< relative to the folder that is written to

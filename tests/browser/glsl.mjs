@@ -19,7 +19,7 @@ execFileSync(process.argv[4], ['shader', 'hlsl', '-q', '-o', folder]);
 const HLSL = readFileSync(join(folder, 'cloudbake.hlsl'), 'utf8');
 const included = readFileSync(join(source_folder, 'engines/hlsl/cloudbake.hlsl'), 'utf8').matchAll(/^#include "(\w+)\.hlsl"$/mg);
 const in_hlsl = [...included].map(found => found[1]);
-demand(in_hlsl.length === 8, `the HLSL is made of ${in_hlsl.join(', ')}`);
+demand(in_hlsl.length === 9, `the HLSL is made of ${in_hlsl.join(', ')}`);
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es

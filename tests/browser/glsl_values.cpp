@@ -448,7 +448,7 @@ int main(int, char** words) {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& functions : {lobeFunctions(), impostorFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(),
                                 castShadowFunctions(), cloudShadeFunctions(), noiseFunctions(), softFunctions(), pictureFunctions(),
-                                terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
+                                sequenceFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
       std::vector<Point> points(f.points);
       parallelFor(f.points, [&](uint32_t i) {

@@ -55,6 +55,6 @@ struct Function {
 inline constexpr uint32_t kManyPoints = 100000;
 inline uint32_t marchedPoints() { return runsWhole() ? kManyPoints : kManyPoints / 4; }
 
-std::vector<Function> terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions();
+std::vector<Function> sequenceFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions();
 
 }  // namespace cloudbake

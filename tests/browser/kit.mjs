@@ -23,7 +23,7 @@ for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', en
 const used = new Set(['URP/CloudbakeFeature.cs', 'URP/Cloudbake.Universal.asmdef', 'Editor/CloudbakeMaterials.cs',
   'Editor/Cloudbake.Editor.asmdef', 'Cloudbake.asmdef', 'CloudbakeAsset.cs', 'CloudbakeCamera.cs', 'CloudbakeChain.cs',
   'Resources/CloudbakeChain.shader', 'CloudbakeCloud.cs', 'CloudbakeImpostor.cs',
-  'CloudbakeMath.cs', 'CloudbakePainted.shader'].map(name => `unity/${name}`));
+  'CloudbakeMath.cs', 'CloudbakePainted.shader', 'CloudbakeSequence.cs'].map(name => `unity/${name}`));
 const kit = name => (used.add(name), readFileSync(join(folder, name), 'utf8'));
 
 // --- What is evaluated of an engine ---
@@ -66,6 +66,8 @@ function nodeOf(head, name) {
 
 // The inputs of the nodes that are only compiled. Unreal gives a texture object a sampler of its own.
 const IMAGE = 'float2 UV, Texture2D<float4>';
+const SEQUENCE = `float2 Texel, Texture2D<float4> KeysPicture, float3 Low, float3 High, float Densest, float3 Place,
+  float2 Moment`;
 const CUSTOM_NODES = {
   ColorOfLight: ['float3', `float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun,
     float3 Phase`],
@@ -77,6 +79,9 @@ const CUSTOM_NODES = {
     Texture2D<float4> LobePicture, SamplerState LobePictureSampler, Texture2D<float4> RestPicture, SamplerState RestPictureSampler`],
   SoftOpacity: ['float2', `float3 Normal, float3 View, float3 OwnPlace, float Seconds, float2 Pixel, float Along, float Away, float Solid,
     float2 Rim, float4 Noise, float SoftDistance, float2 NearFade, float2 FarFade`],
+  SequencePosition: ['float3', SEQUENCE],
+  SequenceLobe: ['float3', SEQUENCE],
+  SequenceMask: ['float', 'float2 Pixel, float2 Shown'],
   'painted/Channels': ['float3', 'float2 Light, float3 Normal, float3 ToSun, float Along, float2 DepthRange'],
   'painted/Resolve': ['float4', `${IMAGE} Captured`],
   'painted/Weighted': ['float4', `${IMAGE} Channels, float OfDepth`],
@@ -203,14 +208,14 @@ function evaluate({ text, attributes, cases }) {
 
 // The programs of the ShaderLab file, one per pipeline and light, with stand-ins for Unity's libraries and what multi_compile switches on.
 function compileUnity() {
-  const text = kit('unity/Cloudbake.shader'), look = kit('unity/CloudbakeLook.hlsl').replace(/^#include "CloudbakeLobe.hlsl"$/m,
-    () => kit('unity/CloudbakeLobe.hlsl'));
+  const text = kit('unity/Cloudbake.shader'), look = kit('unity/CloudbakeLook.hlsl')
+    .replace(/^#include "(Cloudbake(Lobe|Sequence).hlsl)"$/mg, (_, name) => kit(`unity/${name}`));
   const [, shared] = text.match(/CGINCLUDE\n(.*?)ENDCG/s);
   const stub = name => readFileSync(join(source, `tests/unity/${name}_stub.hlsl`), 'utf8');
   const programs = [...[...text.matchAll(/HLSLPROGRAM\n(.*?)ENDHLSL/gs)].map(([, own]) => [stub('urp') + own, 'vertex']),
     ...[...text.matchAll(/CGPROGRAM\n(.*?)ENDCG/gs)].map(([, own]) => [stub('builtin') + shared + own, 'vertexOf'])];
   for (const [own, vertex] of programs)
-    for (const define of ['', '#define LOD_FADE_CROSSFADE\n#define _ADDITIONAL_LIGHTS_VERTEX\n'])
+    for (const define of ['', '#define LOD_FADE_CROSSFADE\n#define _ADDITIONAL_LIGHTS_VERTEX\n', '#define CLOUDBAKE_SEQUENCE\n'])
       for (const [stage, entry] of [['vert', vertex], ['frag', 'fragment']])
         translated(define + own.replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting|"AutoLight)).*$/gm, '')
           .replace(/^ *#include "CloudbakeLook.hlsl"/m, () => look), stage, entry);

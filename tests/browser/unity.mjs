@@ -7,6 +7,7 @@ import { existsSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { seenAt, sequenceOf } from '../../engines/npm/sequence.js';
 import { chunksOf, valuesOf } from './glb.mjs';
 import { requireTranslators, translated } from './hlsl.mjs';
 
@@ -62,6 +63,34 @@ function testScripts(programs) {
   const grows = found.every((x, i) => i === 0 || x >= found[i - 1]), is = (i, x) => Math.abs(found[i] - x) < 1e-5;
   demand(grows && is(0, 0) && is(2, 0.5) && is(4, 1) && is(7, 1.5) && is(9, 2),
     `levels of detail give way at ${found.map(x => x.toFixed(2)).join(', ')}`);
+}
+
+// What a sequence shows is what the module of the npm package says.
+function testSequence(program) {
+  run('sequence', 'humilis', '--vary', 'size=0.5:0.8', '--frame-count', '8', '--vertices', '200', '--voxels', '30', '--fade', '2',
+    '--change', '0.5', '--loop', '--as', 'picture', '-o', 'smoke.glb');
+  const file = join(folder, 'smoke.glb'), { json } = chunksOf(readFileSync(file));
+  const sequence = sequenceOf(json), { segments, box } = sequence;
+  const frames = Array.from({ length: 29 }, (_, i) => i * sequence.period / 13);
+  const read = answer(program, 'sequence', file, ...frames.map(frame => String(frame / sequence.framesPerSecond)));
+  const [low, high] = box, view = json.bufferViews[json.images[0].bufferView];
+  const same = [-high[0], low[1], low[2], -low[0], high[1], high[2]].every((x, i) => Math.abs(x - read.box[i]) < 1e-5);
+  demand(read.picture === view.byteLength && same, `the scripts read the picture of a sequence, ${read.picture} bytes, and its box`);
+  const fades = frames.filter((frame, i) => {
+    const seen = seenAt(sequence, frame / sequence.framesPerSecond), later = seen.at(-1).weight;
+    const shown = read.shown[i].sort((a, b) => seen.findIndex(one => one.segment === a[0]) - seen.findIndex(one => one.segment === b[0]));
+    const right = shown.length === seen.length && seen.every(({ segment, frame: own }, s) => {
+      const [part, [key, share], [from, to]] = shown[s], keys = segments[segment].frames, next = keys[Math.min(key + 1, keys.length - 1)];
+      const thresholds = seen.length === 1 ? [0, 1] : s === 0 ? [later, 1] : [0, later];
+      return part === segment && Math.abs(keys[key] + share * (next - keys[key]) - own) < 1e-4
+        && Math.abs(from - thresholds[0]) < 1e-4 && Math.abs(to - thresholds[1]) < 1e-4;
+    });
+    demand(right, `at frame ${frame.toFixed(2)} of a sequence: ${JSON.stringify(shown)}`);
+    return seen.length > 1;
+  });
+  demand(fades.length > 2 && fades.length < frames.length, `${fades.length} of ${frames.length} frames are in a fade`);
+  const ends = read.ends.map(x => x.toFixed(2)).join(', ');
+  demand(ends === '0.75, 0.50, 0.75, 1.00, 0.00', `a sequence begins again, or stops at its end: ${ends}`);
 }
 
 // --- The shaders ---
@@ -341,6 +370,7 @@ await testPage(folder, async page => {
     run('shader', 'unity', 'cloud.glb', '--scene', `${kit}.toml`, '-o', kit);
     const programs = compile(kit), passes = chainPasses(kit), cloud = cloudShaders(kit);
     if (kit === 'painted') testScripts(programs);
+    if (kit === 'painted') testSequence(programs['built-in']);
     run('view', '--scene', `${kit}.toml`, ...VIEW, '-o', 'page.html');
     run('preview', '--scene', `${kit}.toml`, ...VIEW, '--size', SIZE.join('x'), '-o', 'truth.png');
     await open(page, 'page.html', `ui=0&size=${SIZE.join('x')}`);

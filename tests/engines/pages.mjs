@@ -23,6 +23,7 @@ const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'thre
   'cloudbake-materials/three/sequence': 'cloudbake-materials/three_sequence.js',
   'cloudbake-materials/three/shade': 'cloudbake-materials/three_shade.js',
   'cloudbake-materials/babylon/painted': 'cloudbake-materials/babylon_painted.js',
+  'cloudbake-materials/babylon/sequence': 'cloudbake-materials/babylon_sequence.js',
   'cloudbake-materials/babylon/shade': 'cloudbake-materials/babylon_shade.js',
   'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
 

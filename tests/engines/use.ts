@@ -7,6 +7,7 @@ import { CloudLevels, CloudMaterial, CloudShadow, CloudSky, CloudbakeLoaderPlugi
   sortImpostors } from 'cloudbake-materials/three';
 import { PaintedClouds } from 'cloudbake-materials/three/painted';
 import { CloudSequence } from 'cloudbake-materials/three/sequence';
+import { CloudSequence as BabylonSequence } from 'cloudbake-materials/babylon/sequence';
 import { CloudShade } from 'cloudbake-materials/three/shade';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
@@ -93,6 +94,16 @@ export async function changing(scene: Scene, loader: GLTFLoader, seconds: number
   other.position.set(1, 0, 0);
   other.update(0);
   scene.add(smoke, other);
+  other.dispose();
+  return smoke;
+}
+
+export async function changingInBabylon(scene: BabylonScene, seconds: number): Promise<BabylonSequence> {
+  const smoke = await BabylonSequence.load('smoke.glb', scene), other = smoke.copy();
+  smoke.update(seconds % smoke.duration);
+  smoke.material.extinction *= 2;
+  other.position.x = 1;
+  other.update(0);
   other.dispose();
   return smoke;
 }

@@ -90,9 +90,9 @@ def has_errors(said):
     return "SHADER ERROR" in said or "SCRIPT ERROR" in said or "Parse Error" in said
 
 
-def import_assets(project, names):
+def import_assets(project, names, driver="GLES2"):
     """Godot imports the assets with the kit's script."""
-    said = godot(project, "--editor", "--quit")  # Godot 3.2 ends with an error, after the import
+    said = godot(project, "--editor", "--quit", driver=driver)  # Godot 3.2 ends with an error, after the import
     materials = [(project / f"{name}_cloud.tres").exists() for name in names]
     judge(all(materials) and not has_errors(said), "Godot imports the assets with the kit's script", said)
 
@@ -143,7 +143,9 @@ def as_godot3(shader):
     shader = re.sub(r" : filter_\w+, repeat_disable;", ";", shader)
     shader = re.sub(r"#if CURRENT_RENDERER == RENDERER_COMPATIBILITY\n(.*?)#endif\n", r"\1", shader, flags=re.S)
     for old, new in (("MODEL_MATRIX", "WORLD_MATRIX"), ("INV_VIEW_MATRIX", "CAMERA_MATRIX"),
-                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2")):
+                     ("vec4(VERTEX.xy, 1.0, 1.0)", "vec4(VERTEX.xy, 0.0, 1.0)"), ("sets[first_set], sets[first_set + 1]", "UV, UV2"),
+                     ("CUSTOM0.xy", "UV"), ("texelFetch(sequence_keys, ivec2(at), 0)",
+                                            "textureLod(sequence_keys, (at + 0.5) / vec2(textureSize(sequence_keys, 0)), 0.0)")):
         shader = shader.replace(old, new)
     return shader
 
@@ -197,6 +199,18 @@ def fade_between(x, start, end):
     return t * t * (3 - 2 * t)
 
 
+# What the image chain adds to a scene is left out.
+BARE = """[fog]
+density = 0
+[chain]
+near_width = 0
+far_width = 0
+depth_spread = 0
+swirl_strength = 0
+dark = 1
+detail_shrink = 0
+detail_darkening = 0
+"""
 SIZE = (360, 240)
 BACKGROUND = [0.2, 0.35, 0.6]
 SUN = (130, 28)
@@ -218,6 +232,15 @@ glow = 0
 {colors}{fog}{more}[[cloud]]
 file = "{asset}.glb"
 """
+
+
+def view_of(run, folder, look):
+    """The camera of scene.toml, from the page of `view`."""
+    run("view", "--scene", "scene.toml", "--look", look, "-o", "page.html")
+    [shown] = json.loads(re.search('id="page">(.*)</script>', (folder / "page.html").read_text())[1])["scenes"]
+    camera, towards = shown["camera"], direction((shown["view"]["azimuth"], shown["view"]["elevation"]))
+    away = camera["distance"] * max(1, camera["aspect"] * SIZE[1] / SIZE[0])
+    return {"eye": [at + away * d for at, d in zip(camera["at"], towards)], "target": camera["at"], "fov": camera["fov"]}
 
 
 class Bench:
@@ -246,12 +269,7 @@ class Bench:
         (self.folder / "scene.toml").write_text(scene)
         size = "x".join(map(str, SIZE))
         self.run("preview", "--scene", "scene.toml", "--look", "painted", "--size", size, "-o", "truth.png")
-        self.run("view", "--scene", "scene.toml", "--look", "painted", "-o", "page.html")
-        [shown] = json.loads(re.search('id="page">(.*)</script>', (self.folder / "page.html").read_text())[1])["scenes"]
-        camera, towards = shown["camera"], direction((shown["view"]["azimuth"], shown["view"]["elevation"]))
-        away = camera["distance"] * max(1, camera["aspect"] * SIZE[1] / SIZE[0])
-        view = {"eye": [at + away * d for at, d in zip(camera["at"], towards)], "target": camera["at"], "fov": camera["fov"]}
-        return picture(self.folder / "truth.png"), view
+        return picture(self.folder / "truth.png"), view_of(self.run, self.folder, "painted")
 
     def add(self, name, view, asset="cloud", **more):
         """A scene to draw (tests/godot/scenes.gd has the keys)."""

@@ -13,8 +13,10 @@ func _init():
 		viewport.add_child(camera)
 		place_camera(camera, job)
 		camera.environment = environment_of(job)
+		var clouds = []
 		for place in job.clouds:
-			viewport.add_child(cloud_at(place, job))
+			clouds.append(cloud_at(place, job))
+			viewport.add_child(clouds[-1])
 		for solid in job.get("solids", []):
 			viewport.add_child(box(solid))
 		for light in job.get("lights", []):
@@ -29,6 +31,10 @@ func _init():
 				job[key] = views[i][key]
 			place_camera(camera, job)
 			viewport.size = vector(job.size)
+			for cloud in clouds:
+				if "seconds" in job:    # of sequences
+					cloud.stop()
+					cloud.seek(job.seconds)
 			if "limit" in job:
 				nodes["cloudbake_levels"]._limits[1] = job.limit
 			if job.get("leaves", false):
@@ -67,6 +73,10 @@ func place_camera(camera, job):
 	camera.fov = job.fov
 	camera.near = job.get("near", 0.05)
 	camera.far = 200.0
+	if "sample" in job:    # the place of the ray in every pixel, from its upper left corner
+		var height = 2 * camera.near * tan(deg2rad(job.fov) / 2)
+		var shift = (vector(job.sample) - Vector2(0.5, 0.5)) * height / job.size[1]
+		camera.set_frustum(height, Vector2(shift.x, -shift.y), camera.near, camera.far)
 	camera.current = true
 
 

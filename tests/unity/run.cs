@@ -2,6 +2,7 @@
 //   mono run.exe asset FILE.glb                  what CloudbakeAsset reads
 //   mono run.exe levels HEIGHTS HEIGHT BAND      CloudbakeMath.Level
 //   mono run.exe widened SIDE DISTANCE HEIGHT SHARE  half a side of CloudbakeMath.Widened
+//   mono run.exe sequence FILE.glb SECONDS…      what CloudbakeAsset reads of a sequence, and what CloudbakeSequence shows at these times
 //   mono run.exe record CASE.json                what the chain records for a camera
 using System;
 using System.IO;
@@ -45,6 +46,7 @@ public static class Program
             var widened = CloudbakeMath.Widened(box, Vector3.zero, Number(words[3]), Number(words[4]));
             Console.WriteLine(MaterialPropertyBlock.Text(widened.extents.x));
         }
+        if (words[0] == "sequence") Console.WriteLine(Sequence(File.ReadAllBytes(words[1]), words.Skip(2).Select(Number).ToArray()));
         if (words[0] == "record")
             Console.WriteLine("[" + string.Join(",\n", Record(JsonUtility.FromJson<Case>(File.ReadAllText(words[1])))) + "]");
         return 0;
@@ -57,6 +59,48 @@ public static class Program
         var numbers = new[] { lobes.exponent, lobes.bias, lobes.extinction, lobes.uv_sets[0], lobes.switch_pixels };
         return "{\"numbers\": " + MaterialPropertyBlock.Text(numbers)
             + ", \"fit_to\": \"" + lobes.fit_to + "\", \"fault\": \"" + CloudbakeAsset.FaultOf(lobes, 0) + "\"}";
+    }
+
+    // Of each time: the parts that are seen, each with its key, the share of the way to the next one, and its thresholds.
+    static string Sequence(byte[] bytes, float[] seconds)
+    {
+        var info = CloudbakeAsset.Read(bytes).sequence;
+        var box = CloudbakeAsset.BoxOf(CloudbakeAsset.JsonOf(bytes));
+        var player = new GameObject("sequence").AddComponent<CloudbakeSequence>();
+        player.framesPerSecond = info.frames_per_second;
+        player.period = info.period;
+        player.loops = info.loops;
+        player.parts = info.segments.Select(segment => new CloudbakeSequence.Part
+            { renderer = new GameObject("segment").AddComponent<Renderer>(), frames = segment.frames,
+              place = new Vector4(segment.first_row, 1, segment.frames.Length, 0) }).ToArray();
+        Send(player, "OnEnable");
+        var shown = seconds.Select(moment =>
+        {
+            player.Seek(moment);
+            return "[" + string.Join(", ", player.parts.Select((part, i) => part.renderer.enabled
+                ? "[" + i + ", " + part.renderer.block["sequence_moment"] + ", " + part.renderer.block["_SequenceShown"] + "]" : "")
+                .Where(text => text != "")) + "]";
+        }).ToArray();
+        return "{\"picture\": " + CloudbakeAsset.PictureOf(bytes, "keys").Length + ", \"box\": "
+            + MaterialPropertyBlock.Text(box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z)
+            + ", \"ends\": " + Ends(player) + ", \"shown\": [" + string.Join(", ", shown) + "]}";
+    }
+
+    // How often it begins again, and whether it plays on, after two frames that are longer than the sequence.
+    static string Ends(CloudbakeSequence player)
+    {
+        player.loops = false;
+        Time.deltaTime = (float)player.Duration * 0.75f;
+        var seconds = new double[4];
+        for (var i = 0; i < seconds.Length; ++i)
+        {
+            player.loop = i < 2;
+            player.Seek(i % 2 == 0 ? 0 : player.seconds);
+            player.playing = true;
+            Send(player, "Update");
+            seconds[i] = player.seconds / player.Duration;
+        }
+        return MaterialPropertyBlock.Text(seconds.Select(x => (float)x).Append(player.playing ? 1 : 0).ToArray());
     }
 
     static string Level(float[] heights, float height, float band)

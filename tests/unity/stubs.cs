@@ -38,6 +38,10 @@ namespace UnityEngine
     {
         public float x, y, z, w;
         public Vector4(float x, float y, float z, float w) { this.x = x; this.y = y; this.z = z; this.w = w; }
+        public static bool operator ==(Vector4 a, Vector4 b) => a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+        public static bool operator !=(Vector4 a, Vector4 b) => !(a == b);
+        public override bool Equals(object other) => other is Vector4 v && this == v;
+        public override int GetHashCode() => x.GetHashCode();
     }
 
     public struct Color
@@ -103,6 +107,7 @@ namespace UnityEngine
         public HideFlags hideFlags;
         public static implicit operator bool(Object one) => one != null;
         public static void DestroyImmediate(Object one) { }
+        public static T Instantiate<T>(T original, Transform parent) where T : Object => original;
     }
     [Flags] public enum HideFlags { None, HideAndDontSave = 61 }
 
@@ -113,7 +118,7 @@ namespace UnityEngine
         public T GetComponent<T>() where T : class => gameObject.GetComponent<T>();
         public Component GetComponent(string type) => gameObject.components.FirstOrDefault(one => one.GetType().Name == type);
         public T GetComponentInChildren<T>() where T : class => GetComponentsInChildren<T>().FirstOrDefault();
-        public T[] GetComponentsInChildren<T>() where T : class => gameObject.GetComponentsInChildren<T>();
+        public T[] GetComponentsInChildren<T>(bool includeInactive = false) where T : class => gameObject.GetComponentsInChildren<T>();
     }
 
     public class GameObject : Object
@@ -130,14 +135,15 @@ namespace UnityEngine
             return made;
         }
         public T GetComponent<T>() where T : class => components.OfType<T>().FirstOrDefault();
-        public T[] GetComponentsInChildren<T>() where T : class =>
+        public T[] GetComponentsInChildren<T>(bool includeInactive = false) where T : class =>
             components.OfType<T>().Concat(children.SelectMany(child => child.GetComponentsInChildren<T>())).ToArray();
     }
 
     public class Transform : Component
     {
         public Vector3 position, right = new Vector3(1, 0, 0), up = Vector3.up, forward = new Vector3(0, 0, 1);
-        public Vector3 lossyScale = new Vector3(1, 1, 1);
+        public Transform parent;
+        public Vector3 lossyScale = new Vector3(1, 1, 1), localScale = new Vector3(1, 1, 1);
         public Quaternion rotation;
         public Vector3 TransformPoint(Vector3 own) => position + own;
     }
@@ -151,6 +157,9 @@ namespace UnityEngine
         public Bounds bounds, localBounds;
         public Material[] sharedMaterials = new Material[0];
         public Material sharedMaterial { set { sharedMaterials = new[] { value }; } }
+        public bool enabled = true;
+        public Dictionary<string, string> block = new Dictionary<string, string>();
+        public void SetPropertyBlock(MaterialPropertyBlock properties) => block = new Dictionary<string, string>(properties.values);
     }
 
     public struct LOD
@@ -203,7 +212,8 @@ namespace UnityEngine
         public static void CalculateFrustumPlanes(Camera camera, Plane[] planes) { }
         public static bool TestPlanesAABB(Plane[] planes, Bounds bounds) => isSeen(bounds);
     }
-    public static class Time { public static double timeAsDouble; }
+    public static class Time { public static double timeAsDouble; public static float deltaTime; }
+    public static class Application { public static bool isPlaying = true; }
 
     public class Shader : Object
     {
@@ -220,7 +230,10 @@ namespace UnityEngine
         public void SetFloat(string name, float value) => floats[name] = value;
         public void SetVector(string name, Vector4 value) { }
         public void SetTexture(string name, Texture value) { }
+        public void EnableKeyword(string keyword) { }
     }
+    public class Mesh : Object { public int vertexCount = 0; }
+    public class MeshFilter : Component { public Mesh sharedMesh = new Mesh(); }
 
     public class Texture : Object
     {
@@ -363,6 +376,7 @@ namespace UnityEditor
         public static string GetAssetPath(Object asset) => asset.name;
         public static void SaveAssets() { }
         public static void CreateAsset(Object asset, string path) { }
+        public static void ImportAsset(string path) { }
         public static string GenerateUniqueAssetPath(string path) => path;
         public static T LoadAssetAtPath<T>(string assetPath) where T : Object, new() => new T { name = assetPath };
     }

@@ -11,6 +11,9 @@ public static class CloudbakeMaterials
     // Of the picture for which levels of detail change.
     const int PictureHeight = 1080;
 
+    // Of the picture of a sequence.
+    const int KeyColumns = 1024;
+
     [MenuItem("Assets/Cloudbake/Create Material")]
     static void CreateMaterials() => ForEachGlb(path => CreateMaterial(path, "Cloudbake/Cloud"));
 
@@ -27,6 +30,10 @@ public static class CloudbakeMaterials
     // In the scene, from the GLB of `cloudbake impostor` and the two pictures beside it.
     [MenuItem("Assets/Cloudbake/Create Impostor")]
     static void CreateImpostors() => ForEachGlb(CreateImpostor);
+
+    // In the scene, from the GLB of `cloudbake sequence --as picture`.
+    [MenuItem("Assets/Cloudbake/Create Sequence")]
+    static void CreateSequences() => ForEachGlb(CreateSequence);
 
     // Makes a shadow's picture the cookie of the scene's sun, which is turned and moved to where it was drawn from.
     [MenuItem("Assets/Cloudbake/Use as Light Cookie")]
@@ -107,7 +114,7 @@ public static class CloudbakeMaterials
                 Debug.LogError(picture + " is missing: `cloudbake impostor` writes it beside the GLB");
                 return;
             }
-            material.SetTexture("impostor_" + name, Atlas(picture));
+            material.SetTexture("impostor_" + name, Numbers(picture, true));
         }
         material.SetFloat("_Exponent", info.exponent);
         material.SetFloat("_Extinction", info.extinction);
@@ -123,14 +130,76 @@ public static class CloudbakeMaterials
         Undo.RegisterCreatedObjectUndo(shown, "Create Impostor");
     }
 
-    // A picture of an atlas, imported as the numbers that it has.
-    static Texture2D Atlas(string path)
+    static void CreateSequence(string path)
+    {
+        var bytes = File.ReadAllBytes(path);
+        var info = CloudbakeAsset.Read(bytes);
+        var keys = CloudbakeAsset.PictureOf(bytes, "keys");
+        if (!CloudbakeAsset.IsSequence(info) || keys == null)
+        {
+            Debug.LogError(path + ": it has no picture of keys: make it with `cloudbake sequence --as picture`");
+            return;
+        }
+        var picture = Path.ChangeExtension(path, null) + "_keys.png";
+        File.WriteAllBytes(picture, keys);
+        AssetDatabase.ImportAsset(picture);
+        var box = CloudbakeAsset.BoxOf(CloudbakeAsset.JsonOf(bytes));
+        var material = new Material(Shader.Find("Cloudbake/Cloud"));
+        material.EnableKeyword("CLOUDBAKE_SEQUENCE");
+        material.SetFloat("_Sequence", 1);
+        material.SetFloat("_Exponent", info.exponent);
+        material.SetFloat("_Bias", info.bias);
+        material.SetFloat("_Extinction", info.extinction);
+        material.SetTexture("sequence_keys", Numbers(picture, false));
+        // The shader mirrors x after it has read the keys.
+        var low = CloudbakeMath.Mirrored(box.min);
+        var high = CloudbakeMath.Mirrored(box.max);
+        material.SetVector("sequence_low", new Vector4(high.x, low.y, low.z, 0));
+        material.SetVector("sequence_high", new Vector4(low.x, high.y, high.z, 0));
+        material.SetFloat("sequence_densest", info.sequence.density_max);
+        AssetDatabase.CreateAsset(material, AssetDatabase.GenerateUniqueAssetPath(Path.ChangeExtension(path, null) + "_cloud.mat"));
+
+        var shown = (GameObject)PrefabUtility.InstantiatePrefab(AssetDatabase.LoadAssetAtPath<GameObject>(path), null);
+        var renderers = shown.GetComponentsInChildren<Renderer>(true);
+        if (renderers.Length != info.sequence.segments.Length)
+        {
+            Debug.LogError(path + ": its importer has joined or split meshes; a sequence needs one for each segment");
+            return;
+        }
+        var player = shown.AddComponent<CloudbakeSequence>();
+        player.framesPerSecond = info.sequence.frames_per_second;
+        player.period = info.sequence.period;
+        player.loops = info.sequence.loops;
+        player.box = box;
+        player.parts = Array.ConvertAll(info.sequence.segments, segment => PartOf(segment, renderers[segment.mesh], material));
+        if (player.loops && player.parts.Length == 1)
+        {
+            var other = UnityEngine.Object.Instantiate(renderers[0], renderers[0].transform.parent);
+            player.parts = new[] { player.parts[0], PartOf(info.sequence.segments[0], other, material) };
+        }
+        Undo.RegisterCreatedObjectUndo(shown, "Create Sequence");
+    }
+
+    // The nodes are in the order of their meshes.
+    static CloudbakeSequence.Part PartOf(CloudbakeAsset.Segment segment, Renderer renderer, Material material)
+    {
+        var rows = (renderer.GetComponent<MeshFilter>().sharedMesh.vertexCount + KeyColumns - 1) / KeyColumns;
+        renderer.sharedMaterial = material;
+        renderer.transform.localScale = new Vector3(1, 1, 1);  // the file scales what is not seen by 0
+        return new CloudbakeSequence.Part
+        {
+            renderer = renderer, frames = segment.frames, place = new Vector4(segment.first_row, rows, segment.frames.Length, 0),
+        };
+    }
+
+    // A picture that is imported as the numbers that it has.
+    static Texture2D Numbers(string path, bool hasLevels)
     {
         var importer = (TextureImporter)AssetImporter.GetAtPath(path);
         importer.sRGBTexture = false;
-        importer.mipmapEnabled = true;
+        importer.mipmapEnabled = hasLevels;
         importer.wrapMode = TextureWrapMode.Clamp;
-        importer.filterMode = FilterMode.Trilinear;
+        importer.filterMode = hasLevels ? FilterMode.Trilinear : FilterMode.Point;
         importer.npotScale = TextureImporterNPOTScale.None;
         importer.textureCompression = TextureImporterCompression.Uncompressed;
         importer.maxTextureSize = 16384;

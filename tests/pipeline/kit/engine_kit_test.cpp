@@ -46,6 +46,13 @@ TEST(EngineKit, KnowsTheTitleOfEachEngine) {
   EXPECT_EQ(engineTitle("npm"), "three.js, Babylon.js");
 }
 
+TEST(EngineKit, KnowsWhichEnginesPlaySequences) {
+  EXPECT_TRUE(playsSequences("npm"));
+  EXPECT_TRUE(playsSequences("godot3"));
+  EXPECT_FALSE(playsSequences("blender"));
+  EXPECT_FALSE(playsSequences("nonsense"));
+}
+
 TEST(EngineKit, FillsInTheConstantsOfAnAsset) {
   const std::vector<EngineFile> files = engineFiles("glsl", someInfo());
   ASSERT_EQ(files.size(), 1U);
