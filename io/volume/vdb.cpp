@@ -20,6 +20,7 @@
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -365,6 +366,37 @@ vdb::FloatGrid::Ptr fromLevelSet(const vdb::FloatGrid& file, const IndexBox& box
   return closedWhereSignsChange(volume, frame, limits);
 }
 
+// The place of (x, y, z) of a file with another axis up, as for sculpts: +Z or +X becomes +Y.
+template <class T>
+std::array<T, 3> turned(std::array<T, 3> p, UpAxis up) {
+  if (up == UpAxis::kZ) return {p[0], p[2], -p[1]};
+  if (up == UpAxis::kX) return {-p[1], p[0], p[2]};
+  return p;
+}
+
+// Turns the lattice onto itself, so that no value changes.
+vdb::FloatGrid::Ptr turned(const vdb::FloatGrid& grid, UpAxis up) {
+  const auto at = [up](const vdb::Coord& ijk) {
+    const auto [i, j, k] = turned(std::array{ijk.x(), ijk.y(), ijk.z()}, up);
+    return vdb::Coord(i, j, k);
+  };
+  vdb::FloatGrid::Ptr result = vdb::FloatGrid::create(grid.background());
+  vdb::FloatGrid::Accessor values = result->getAccessor();
+  for (auto value = grid.cbeginValueAll(); value; ++value) {
+    if (!value.isValueOn() && *value == grid.background()) continue;
+    vdb::CoordBBox box;
+    value.getBoundingBox(box);
+    const vdb::Coord a = at(box.min()), b = at(box.max());
+    if (value.isVoxelValue() && value.isValueOn())
+      values.setValueOn(a, *value);
+    else if (value.isVoxelValue())
+      values.setValueOff(a, *value);
+    else
+      result->sparseFill(vdb::CoordBBox(vdb::Coord::minComponent(a, b), vdb::Coord::maxComponent(a, b)), *value, value.isValueOn());
+  }
+  return result;
+}
+
 }  // namespace
 
 VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const VdbSettings& settings, Warnings& warnings) {
@@ -381,6 +413,10 @@ VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const 
   const Limits limits{settings.memory_limit, refuse};
   const IndexBox box = checkSizeAndVoxelize(*grid, is_fog, frame.voxel_size, limits);
   auto values = is_fog ? fromFog(*grid, volume.iso, frame, limits, warnings) : fromLevelSet(*grid, box, frame, limits, warnings);
+  if (settings.up_axis != UpAxis::kY) {
+    values = turned(*values, settings.up_axis);
+    frame.origin = turned(frame.origin, settings.up_axis);
+  }
   volume.level_set.grid = std::make_shared<LevelSetGrid>(LevelSetGrid{std::move(values)});
   return volume;
 }

@@ -8,6 +8,7 @@
 
 #include "core/memory_budget.h"
 #include "core/types.h"
+#include "io/file/read_settings.h"
 
 namespace cloudbake {
 
@@ -17,6 +18,7 @@ struct VdbSettings {
   std::optional<std::string> grid;
   std::optional<double> iso;             ///< fog volumes: the value at the surface; unset = 5 % of the mean active value (counted)
   uint64_t memory_limit = kMemoryLimit;  ///< bytes; a file or an estimate above this is an error
+  UpAxis up_axis = UpAxis::kY;           ///< of the file, which does not say it. The axes are exchanged as those of sculpts are
 };
 
 struct VdbVolume {

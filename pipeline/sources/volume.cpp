@@ -16,7 +16,9 @@ Cloud readVolume(const Settings& settings, BakeReport& report, Stopwatch& watch)
     requireMemoryForFile(file, settings.source.memory_limit);
     std::string bytes = settings.source.read.read_file(file);
     report.info.input_hash = hashBytes(bytes);
-    VdbVolume volume = decodeVdb(file, std::move(bytes), settings.source.volume, report.warnings);
+    VdbSettings read_as = settings.source.volume;
+    read_as.up_axis = settings.source.read.up_axis.value_or(UpAxis::kY);
+    VdbVolume volume = decodeVdb(file, std::move(bytes), read_as, report.warnings);
     cloud.level_set = std::move(volume.level_set);
     cloud.iso = volume.iso;
     cloud.voxel_size = float(cloud.level_set->frame.voxel_size);

@@ -97,6 +97,19 @@ TEST(VdbTest, TheSurfaceIsInPlace) {
   EXPECT_LT(worstOffset(readVdb(writeVdb(folder, {grid})).level_set, 10, {0.123F, 4.567F, -8.9F}), 0.25 / 20 + 1e-3);
 }
 
+TEST(VdbTest, AnotherAxisIsUp) {
+  const TestFolder folder;
+  const auto turnedBall = [&](const vdb::FloatGrid::Ptr& grid, UpAxis up) {
+    const auto file = writeVdb(folder, {grid});
+    Warnings warnings;
+    return decodeVdb(file, bytesOf(file), {.up_axis = up}, warnings).level_set;
+  };
+  expectBall(turnedBall(ballGrid(10, {1, 2, 3}, 0.5), UpAxis::kZ), 10, {1, 3, -2}, 1e-4);
+  expectBall(turnedBall(ballGrid(10, {1, 2, 3}, 0.5), UpAxis::kX), 10, {-2, 1, 3}, 1e-4);
+  expectBall(turnedBall(ballGrid(40, {1, 2, 3}, 0.5), UpAxis::kZ), 40, {1, 3, -2}, 1e-4);
+  EXPECT_LT(worstOffset(turnedBall(fogBall(10, 0.4), UpAxis::kZ), 10, {1, 3, -2}), 0.6);
+}
+
 TEST(VdbTest, HalvesAndDoubles) {
   const TestFolder folder;
   auto halves = ballGrid(10, {1, 2, 3}, 0.5);

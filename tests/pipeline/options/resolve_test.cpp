@@ -293,7 +293,7 @@ TEST(Resolve, ASceneIsInPlaceOfAnAsset) {
 
 TEST(Resolve, OptionsThatMeanNothingToTheSource) {
   const std::set<std::string> of_sculpts{"remesh",        "refine",      "repair", "close", "separate", "inspect",
-                                         "allow-outside", "scene-index", "units",  "up",    "animation"},
+                                         "allow-outside", "scene-index", "units",  "animation"},
       of_volumes{"grid", "iso"},
       of_grown{"blend", "flat-base", "base-softness", "base-bumps", "base-bump-size", "noise", "noise-size", "noise-octaves", "vary"},
       no_volume{"voxels", "voxel-size", "frame-count"};
@@ -302,6 +302,7 @@ TEST(Resolve, OptionsThatMeanNothingToTheSource) {
     if (of_sculpts.contains(option.name)) return kind == SourceKind::kSculpt;
     if (of_volumes.contains(option.name)) return kind == SourceKind::kVolume;
     if (of_grown.contains(option.name)) return grown;
+    if (std::string_view(option.name) == "up") return !grown;
     if (no_volume.contains(option.name)) return kind != SourceKind::kVolume;
     // The file itself is an option of a cloud that grows, too.
     return !of_rules || std::string_view(option.name) == "rules" || (grown && kind != SourceKind::kSpheres);
