@@ -101,8 +101,10 @@ TEST(VdbTest, AnotherAxisIsUp) {
   const TestFolder folder;
   const auto turnedBall = [&](const vdb::FloatGrid::Ptr& grid, UpAxis up) {
     const auto file = writeVdb(folder, {grid});
+    VdbSettings settings;
+    settings.up_axis = up;
     Warnings warnings;
-    return decodeVdb(file, bytesOf(file), {.up_axis = up}, warnings).level_set;
+    return decodeVdb(file, bytesOf(file), settings, warnings).level_set;
   };
   expectBall(turnedBall(ballGrid(10, {1, 2, 3}, 0.5), UpAxis::kZ), 10, {1, 3, -2}, 1e-4);
   expectBall(turnedBall(ballGrid(10, {1, 2, 3}, 0.5), UpAxis::kX), 10, {-2, 1, 3}, 1e-4);
