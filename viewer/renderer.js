@@ -171,12 +171,12 @@ export class Renderer {
 
   // Draws the picture of the samples so far, which counts so much, and adds it to those that were blended before. Shows the last one.
   showBlended(weight, number, is_last) {
-    const { gpu, gpu: { size, gl: { RGBA16F } } } = this, [from, to] = [0, 1].map(i => `blended ${(number + i) % 2}`);
-    gpu.screen = gpu.target('one picture', size, RGBA16F);
+    const { gpu } = this, [from, to] = [0, 1].map(i => `blended ${(number + i) % 2}`);
+    gpu.screen = gpu.target('one picture');
     this.show();
     gpu.screen = null;
-    if (number === 0) gpu.clear([gpu.target(from, size, RGBA16F)], [0, 0, 0, 0]);
-    gpu.fill(is_last ? [] : [gpu.target(to, size, RGBA16F)], gpu.program('accumulate.frag'),
+    if (number === 0) gpu.clear([gpu.target(from)], [0, 0, 0, 0]);
+    gpu.fill(is_last ? [] : [gpu.target(to)], gpu.program('accumulate.frag'),
       { sums: from, samples: 'one picture', share: weight, fineness: 1, pixel: [0, 0] });
   }
 

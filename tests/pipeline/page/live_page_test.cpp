@@ -138,7 +138,7 @@ Scenery growingBalls() {
   const auto keyOf = [](double frame, const BakedMesh& ball) {
     return SequenceKey{frame, ball.surface.positions, ball.surface.normals, ball.lobes};
   };
-  const BakedMesh small = bakedBall(1), large = bakedBall(2), fine = bakedBall(2, {}, 3);
+  const BakedMesh small = bakedBall(1, {}, 2), large = bakedBall(2, {}, 2), fine = bakedBall(2, {}, 3);
   BakedMesh& first = scenery.meshes["grows"] = small;
   SceneSequence& own = scenery.sequences[&first];
   own.sequence = {small.info, 12, true, 20, {}};
