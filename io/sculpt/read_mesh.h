@@ -17,11 +17,13 @@ namespace cloudbake {
 /// Vertices: a file of one part without attributes of corners keeps its vertices and their order, including unreferenced ones (STL: its
 /// distinct positions). With several parts, each keeps those that it uses, in their order. Otherwise there is one vertex per distinct
 /// (position, normal, UV) corner of a part in order of first use. glTF keeps its own vertices.
-/// Normals are unit vectors, v of the UVs grows downwards, and colours are linear. Polygons become triangles, as described in
-/// io/sculpt/triangulate.h. Guaranteed: at least one triangle, every index in range, every position, normal and UV finite, every `to_scene`
-/// invertible. Counts kUnitsAssumed, kPoseIgnored, kPartIgnored, kMaterialIgnored, kTextureIgnored, kImageNotEmbedded, kCameraIgnored,
-/// kLightIgnored, kCurveIgnored, kMissingColor, kUnreferencedVertex, kDegenerateTriangle, kZeroNormal, kMissingUvSet. Throws IoError if the
-/// file cannot be read, InputError if its bytes are unusable or its format is not supported.
+/// With settings.moment, a glTF or FBX is posed by its animation, and its length is in Sculpt::animation_seconds; Sculpt::nodes stay as
+/// they are without it. Other formats are then refused. Normals are unit vectors, v of the UVs grows downwards, and colours are linear.
+/// Polygons become triangles, as described in io/sculpt/triangulate.h. Guaranteed: at least one triangle, every index in range, every
+/// position, normal and UV finite, every `to_scene` invertible. Counts kUnitsAssumed, kPoseIgnored, kPartIgnored, kMaterialIgnored,
+/// kTextureIgnored, kImageNotEmbedded, kCameraIgnored, kLightIgnored, kCurveIgnored, kMissingColor, kUnreferencedVertex,
+/// kDegenerateTriangle, kZeroNormal, kMissingUvSet. Throws IoError if the file cannot be read, InputError if its bytes are unusable or its
+/// format is not supported.
 Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings);
 
 /// The same from the bytes of `file`. Its name is used for messages, for choosing the reader and for finding buffers.

@@ -14,7 +14,8 @@ namespace cloudbake {
 /// scene, else scene 0, else all root nodes) becomes a part, in order of the nodes, depth first. Primitives of a mesh that have the same
 /// vertices become one part. Primitives that share vertices with other meshes or nodes, and use at most half of them, get copies of those
 /// that they use. Skinned parts are posed by their joints. Strips and fans become triangles; triangles with two equal corners only join a
-/// strip and are dropped. Morph targets are applied with the file's weights. `Sculpt.gltf` keeps the document and all its buffers,
+/// strip and are dropped. Morph targets are applied with the file's weights. With settings.moment, transforms and weights are those of an
+/// animation, and Sculpt::animation_seconds is set. `Sculpt.gltf` keeps the document and all its buffers,
 /// unpacked: compressed data (Draco, meshopt) is decoded, and instances become nodes. The lobes of an earlier bake are taken out. `file` is
 /// for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB can embed them. Counts
 /// kPartIgnored (points, lines), kHiddenPart (nodes that KHR_node_visibility hides), kPoseIgnored (morph targets, animations),

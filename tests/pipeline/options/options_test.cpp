@@ -123,9 +123,10 @@ TEST(Options, FormsAreWhatIsTaken) {
 // A default that reads as a value is the one that holds where the option is not given. Others are words, and parameters_test and
 // fields_test hold those to what they say.
 TEST(Options, GivingTheDefaultChangesNothing) {
-  const std::set<std::string> words{
-      "ray-length",     "bake-voxels", "exponent", "bias", "extinction",  "sun-arc",       "uv-set",         "noise-size",   "units", "up",
-      "truth-vertices", "memory",      "threads",  "iso",  "scene-index", "base-softness", "base-bump-size", "noise-octaves"};
+  const std::set<std::string> words{"ray-length",     "bake-voxels",    "exponent",      "bias",       "extinction",
+                                    "sun-arc",        "uv-set",         "noise-size",    "units",      "up",
+                                    "truth-vertices", "memory",         "threads",       "iso",        "scene-index",
+                                    "base-softness",  "base-bump-size", "noise-octaves", "frame-count"};
   // Free text, a length of which 0 means the same as none, and what the option is given without its value.
   const std::set<std::string> elsewhere{"grid",  "name",    "depfile-target", "noise",          "base-bumps",
                                         "serve", "octaves", "phase",          "view-extinction"};
