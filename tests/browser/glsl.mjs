@@ -39,6 +39,7 @@ ${HLSL}
 #define vec2 float2
 #define vec3 float3
 #define vec4 float4
+#define mix lerp
 #define mat3(a, b, c) transpose(float3x3(a, b, c))
 ${prelude}
 float4 main(float4 at : SV_Position) : SV_Target {
