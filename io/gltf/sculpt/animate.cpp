@@ -195,7 +195,8 @@ std::vector<double> valueAt(const Track& track, double seconds) {
 bool isConstant(const Track& track) {
   if (track.times.size() == 1) return true;
   for (size_t k = 0; k < track.times.size(); ++k) {
-    if (!std::ranges::equal(track.row(k), track.row(0))) return false;
+    const auto row = track.row(k), first = track.row(0);
+    if (!std::equal(row.begin(), row.end(), first.begin(), first.end())) return false;
     if (track.interpolation != Interpolation::kCubic) continue;
     for (const size_t tangent : {0, 2})
       if (std::ranges::any_of(track.row(k, tangent), [](float x) { return x != 0; })) return false;
