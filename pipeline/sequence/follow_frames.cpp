@@ -395,8 +395,26 @@ class Follower {
     Record record = followed(front_->mesh, front_->key, i);
     const bool is_lost = record.figures.isLost();
     keep(segments_.size() - 1, i, std::move(record), false, front_->key);
-    if (is_lost) begin(i, std::min(size_t(held_.settings.sequence.fade), i - front_->began));
+    if (is_lost) beginAfter(i);
     watch_.lap(report_.seconds, "follow");
+  }
+
+  // Begins a segment at a frame at which the one before has lost the surface. Two fades at a time cannot be shown, so that none reaches
+  // into the frames over which a loop's end fades into its beginning: a mesh that is lost at the end goes on, and one that is lost at the
+  // beginning is replaced by the next one, which is followed back to the first frame.
+  void beginAfter(size_t i) {
+    const SequenceSettings& settings = held_.settings.sequence;
+    const double period = periodOf(inputs_, settings), faded = inputs_.back().frame - period, frame = inputs_[i].frame;
+    if (settings.loops && frame > period) return;
+    const bool replaces = settings.loops && frame <= faded;
+    size_t back = replaces ? i : std::min(size_t(settings.fade), i - front_->began);
+    while (settings.loops && !replaces && inputs_[i - back].frame < faded) --back;
+    begin(i, back);
+    if (!replaces) return;
+    const size_t earlier = segments_.size() - 1;
+    segments_.erase(segments_.begin(), segments_.begin() + ptrdiff_t(earlier));
+    std::erase_if(unbaked_, [&](const Place& place) { return place.segment < earlier; });
+    for (Place& place : unbaked_) place.segment -= earlier;
   }
 
   // Of all frames that have none. Those of one frame share its field.

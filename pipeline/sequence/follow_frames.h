@@ -33,8 +33,8 @@ struct FollowedFrames {
 };
 
 /// Each segment begins with the surface of the frame at which the one before lost it (FollowFigures::isLost), and is also followed back
-/// over settings.sequence.fade frames, during which it takes the place of that one. σ, k, b and the value of a fog's surface are the same
-/// for all frames. Frames that are in the cache are not read again.
+/// over settings.sequence.fade frames, during which it takes the place of that one. Fades do not overlap, also not with that of a loop. σ,
+/// k, b and the value of a fog's surface are the same for all frames. Frames that are in the cache are not read again.
 FollowedFrames followFrames(const std::vector<FrameInput>& frames, const Settings& settings, std::span<const Given> given,
                             BakeReport& report, Stopwatch& watch);
 

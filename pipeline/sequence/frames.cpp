@@ -177,6 +177,11 @@ AnimationFrames animationFrames(const Settings& settings) {
   return animation;
 }
 
+double periodOf(const std::vector<FrameInput>& frames, const SequenceSettings& settings) {
+  const double last = frames.back().frame;
+  return settings.loops ? last - std::min(double(settings.fade), last / 2) : last;
+}
+
 std::vector<Given> withRecipe(const GrownSource& source, std::span<const Given> line) {
   std::vector<Given> given = source.given;
   for (const Given& one : source.of_sequence)

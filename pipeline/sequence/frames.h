@@ -56,6 +56,9 @@ std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const Grow
 /// The frames of a grown cloud, or of an animation, whose frames per second go to the settings if they have none.
 std::vector<FrameInput> madeFrames(Settings& settings, const std::optional<GrownSource>& source);
 
+/// Frames until a sequence is at its beginning again: of a loop, without those over which its end fades into its beginning.
+double periodOf(const std::vector<FrameInput>& frames, const SequenceSettings& settings);
+
 /// The options of a grown sequence: those of its recipe, which `line`, those of the command line or of a manifest, override. What `line`
 /// varies takes the place of all that the recipe varies.
 std::vector<Given> withRecipe(const GrownSource& source, std::span<const Given> line);

@@ -55,8 +55,7 @@ BakedSequence bakeSequence(const std::vector<FrameInput>& frames, const Settings
   sequence.info = followed.info;
   sequence.frames_per_second = settings.sequence.frames_per_second.value_or(kFramesPerSecond);
   sequence.loops = settings.sequence.loops;
-  const double last = frames.back().frame;
-  sequence.period = sequence.loops ? last - std::min(double(settings.sequence.fade), last / 2) : last;
+  sequence.period = periodOf(frames, settings.sequence);
   for (size_t s = 0; s < followed.segments.size(); ++s) {
     FollowedSegment& own = followed.segments[s];
     SequenceSegment all{own.triangles, {}};

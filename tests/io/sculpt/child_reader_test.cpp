@@ -139,7 +139,7 @@ TEST(ChildReader, KnowsTheAnimation) {
   ReadSettings settings{.child_program = kSelf};
   settings.moment = {"a name", 0.5};
   Warnings warnings;
-  expectError<InputError>([&] { readMesh(kFbx, settings, warnings); }, "it has no animation");
+  expectError<Error>([&] { readMesh(kFbx, settings, warnings); }, "it has no animation");
 }
 
 // An answer is taken if it comes from the same version, and is neither cut off nor longer than its contents.

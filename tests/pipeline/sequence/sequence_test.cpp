@@ -222,6 +222,41 @@ TEST_F(SequenceTest, UnchangedFramesAreNotBakedAgain) {
   EXPECT_EQ(bytesOf(baked({})), bytesOf(third)) << "on one thread";
 }
 
+// Between two moments next to each other, no mesh appears or disappears, also not where a loop begins again.
+void expectNoJumps(const CloudSequence& sequence) {
+  constexpr int kSteps = 32;  // per frame
+  const auto weightsAt = [&](int step) {
+    std::vector<double> weights(sequence.segments.size());
+    const double seconds = (step + 0.5) / kSteps / sequence.frames_per_second;
+    for (const SeenSegment& seen : seenAt(sequence, seconds)) {
+      const SequenceSegment& segment = sequence.segments[seen.segment];
+      EXPECT_TRUE(seen.frame >= segment.first() && seen.frame <= segment.last()) << seconds;
+      weights[seen.segment] += double(seen.weight);
+    }
+    return weights;
+  };
+  const int steps = int(sequence.period) * kSteps;
+  for (int step = 0; step < steps; ++step) {
+    const std::vector<double> now = weightsAt(step), next = weightsAt((step + 1) % steps);
+    for (size_t s = 0; s < now.size(); ++s) EXPECT_NEAR(now[s], next[s], 0.1) << "frame " << double(step) / kSteps;
+  }
+}
+
+TEST_F(SequenceTest, FadesOfALoopDoNotOverlap) {
+  for (const int birth : {1, 3, 4, 5, 8, 11}) {  // of a second ball
+    SCOPED_TRACE(birth);
+    write(13, [&](int i) {
+      const SurfaceMesh ball = ballMesh(1, 3, {0.02F * float(i), 0, 0});
+      return i < birth ? ball : merged(ball, ballMesh(0.5F, 3, {2.5F, 0, 0}));
+    });
+    const CloudSequence sequence = baked({"loop", "fade=3"}).sequence;
+    EXPECT_EQ(sequence.period, 9);
+    EXPECT_EQ(sequence.segments.front().first(), 0);
+    EXPECT_EQ(sequence.segments.back().last(), 12);
+    expectNoJumps(sequence);
+  }
+}
+
 TEST_F(SequenceTest, LoopsFadeTheirEnd) {
   write(9, [](int i) { return ballMesh(1 + 0.05F * float(i), 3); });
   const BakedSequence sequence = baked({"loop", "fade=3"});
