@@ -292,8 +292,8 @@ TEST(Resolve, ASceneIsInPlaceOfAnAsset) {
 }
 
 TEST(Resolve, OptionsThatMeanNothingToTheSource) {
-  const std::set<std::string> of_sculpts{"remesh",        "refine",      "repair", "close", "separate", "inspect",
-                                         "allow-outside", "scene-index", "units",  "animation"},
+  const std::set<std::string> of_sculpts{"remesh",  "refine",        "repair",      "close", "separate",
+                                         "inspect", "allow-outside", "scene-index", "units", "animation"},
       of_volumes{"grid", "iso"},
       of_grown{"blend", "flat-base", "base-softness", "base-bumps", "base-bump-size", "noise", "noise-size", "noise-octaves", "vary"},
       no_volume{"voxels", "voxel-size", "frame-count"};
