@@ -20,7 +20,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kVertices = 200;
-constexpr int kLights = 32;
+constexpr int kLightsOfKeys = 32;
 // Halfway between two keys, lobes are blended too.
 constexpr double kAgreementBetween = 0.1, kMostFolded = 0.05;
 
@@ -68,7 +68,7 @@ SequenceFigures measureKeys(const CloudSequence& sequence, const MeshSettings& m
       if (k + 1 < keys.size()) figures.keys.push_back({s, (keys[k].frame + keys[k + 1].frame) / 2, false});
     }
   }
-  const std::vector<Vec3> lights = bothSenses(sweepAxes(kLights));
+  const std::vector<Vec3> lights = bothSenses(sweepAxes(kLightsOfKeys));
   std::vector<std::exception_ptr> errors(figures.keys.size());
   parallelFor(figures.keys.size(), [&](size_t i) {
     KeyFigures& one = figures.keys[i];
