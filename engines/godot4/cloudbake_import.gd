@@ -4,8 +4,8 @@
 # and the UV sets. An impostor (`cloudbake impostor`) gets a square with the shader cloudbake_impostor, and its pictures are stored beside
 # it. A sequence (`cloudbake sequence --as picture`) gets the shader and the script cloudbake_sequence, and its picture is stored beside
 # it.
-# Import settings that keep the lobes: Meshes > Force Disable Compression on, Ensure Tangents off, Light Baking not "Static Lightmaps" (which
-# replaces UV2). A sequence also needs Generate LODs off.
+# Import settings that keep the lobes: Meshes > Force Disable Compression on, Ensure Tangents off, Light Baking not "Static Lightmaps"
+# (which replaces UV2). A sequence also needs Generate LODs off.
 @tool
 extends EditorScenePostImport
 

@@ -1,5 +1,5 @@
-// cloudbake @version@: the body of a Custom node in Unreal: the lobe of a vertex of a sequence, in place of DecodeLobe.hlsl. Inputs: those of
-// SequencePosition.hlsl. Output: CMOT Float 3, the vector o * d in the mesh's space, in centimetres.
+// cloudbake @version@: the body of a Custom node in Unreal: the lobe of a vertex of a sequence, in place of DecodeLobe.hlsl. Inputs: those
+// of SequencePosition.hlsl. Output: CMOT Float 3, the vector o * d in the mesh's space, in centimetres.
 struct Cloudbake {
 Texture2D<float4> sequence_keys;
 float3 sequence_low, sequence_high, sequence_place;
