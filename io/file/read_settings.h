@@ -1,6 +1,7 @@
 // Settings for reading sculpt files.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,13 @@
 namespace cloudbake {
 
 enum class UpAxis { kX, kY, kZ };
+
+/// The turn that takes the up axis of a file to +Y, row by row.
+constexpr std::array<std::array<int, 3>, 3> turnOf(UpAxis up) {
+  if (up == UpAxis::kX) return {{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
+  if (up == UpAxis::kZ) return {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
+  return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+}
 
 /// A moment of an animation.
 struct AnimationMoment {

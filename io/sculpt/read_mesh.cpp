@@ -66,10 +66,9 @@ const UnreadFormat* unreadFormatOf(const std::string& extension) {
 // Applies the user's frame (scale and axes) to a format without one.
 Affine frameOf(const ReadSettings& settings) {
   Affine frame;
-  if (settings.up_axis == UpAxis::kZ) frame.linear = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
-  if (settings.up_axis == UpAxis::kX) frame.linear = {{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
-  for (auto& row : frame.linear)
-    for (double& value : row) value *= settings.metres_per_unit.value_or(1);
+  const auto turn = turnOf(settings.up_axis.value_or(UpAxis::kY));
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 3; ++c) frame.linear[r][c] = turn[r][c] * settings.metres_per_unit.value_or(1);
   return frame;
 }
 

@@ -366,12 +366,12 @@ vdb::FloatGrid::Ptr fromLevelSet(const vdb::FloatGrid& file, const IndexBox& box
   return closedWhereSignsChange(volume, frame, limits);
 }
 
-// The place of (x, y, z) of a file with another axis up, as for sculpts: +Z or +X becomes +Y.
+// The place of (x, y, z) of a file with another axis up.
 template <class T>
-std::array<T, 3> turned(std::array<T, 3> p, UpAxis up) {
-  if (up == UpAxis::kZ) return {p[0], p[2], -p[1]};
-  if (up == UpAxis::kX) return {-p[1], p[0], p[2]};
-  return p;
+std::array<T, 3> turned(const std::array<T, 3>& p, UpAxis up) {
+  std::array<T, 3> place;
+  for (size_t row = 0; const auto& turn : turnOf(up)) place[row++] = T(turn[0]) * p[0] + T(turn[1]) * p[1] + T(turn[2]) * p[2];
+  return place;
 }
 
 // Turns the lattice onto itself, so that no value changes.
@@ -380,7 +380,7 @@ vdb::FloatGrid::Ptr turned(const vdb::FloatGrid& grid, UpAxis up) {
     const auto [i, j, k] = turned(std::array{ijk.x(), ijk.y(), ijk.z()}, up);
     return vdb::Coord(i, j, k);
   };
-  vdb::FloatGrid::Ptr result = vdb::FloatGrid::create(grid.background());
+  const vdb::FloatGrid::Ptr result = grid.copyWithNewTree();
   vdb::FloatGrid::Accessor values = result->getAccessor();
   for (auto value = grid.cbeginValueAll(); value; ++value) {
     if (!value.isValueOn() && *value == grid.background()) continue;

@@ -45,6 +45,7 @@ double ballVolume(double radius) { return 4.0 / 3 * kPi * radius * radius * radi
 // nearest polygon of some voxels (0.4 % of a ball's, by up to 0.8 voxels, whatever its flags): a share of those may be off by more.
 void expectBall(const LevelSet& level_set, double radius, Vec3 center, double tolerance, double share_off = 0) {
   EXPECT_FLOAT_EQ(level_set.grid->vdb->background(), kBandHalfWidth_voxels);
+  EXPECT_EQ(level_set.grid->vdb->getGridClass(), vdb::GRID_LEVEL_SET);
   EXPECT_EQ(level_set.grid->vdb->transform().voxelSize().x(), 1);
   size_t count = 0, off = 0;
   for (auto value = level_set.grid->vdb->cbeginValueOn(); value; ++value, ++count) {

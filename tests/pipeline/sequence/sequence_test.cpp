@@ -8,8 +8,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "bake/field/level_set.h"
 #include "io/file/write_file.h"
 #include "io/gltf/sequence/sequence_file.h"
+#include "io/volume/vdb.h"
 #include "pipeline/sequence/choose_keys.h"
 #include "tests/io/gltf/gltf_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
@@ -162,6 +164,27 @@ TEST_F(SequenceTest, AGrowingBallNeedsTwoKeys) {
     }
     EXPECT_LT(angle, 8);
   }
+}
+
+// Frames of Blender have +Z up.
+TEST_F(SequenceTest, VolumesAreFollowedWithAnotherAxisUp) {
+  createFolder(file("v"));
+  for (int i = 0; i < 3; ++i) {
+    Warnings warnings;
+    LevelSetSettings lattice;
+    lattice.voxels = 40;
+    const SurfaceMesh ball = ballMesh(1, 4, {0, 0, 5 + 0.05F * float(i)});
+    writeFileAtomically(file(fmt::format("v/b.{}.vdb", i)), encodeVdb(levelSetFromMesh(ball, lattice, warnings)));
+  }
+  const std::vector<FrameInput> frames = frameFiles(file("v"));
+  const std::vector<Given> given = options({"up=z", "vertices=300", "rays=32", "pixels=64"}, kSequence);
+  BakeReport report;
+  Stopwatch watch;
+  const BakedSequence baked =
+      bakeSequence(frames, resolve(sourceOf(SourceKind::kVolume, frames.front().file), given), given, report, watch);
+  const Vec3 center = boxOf(baked.sequence.segments).center();
+  EXPECT_NEAR(center.y, 5.05, 0.1);
+  EXPECT_NEAR(center.z, 0, 0.1);
 }
 
 TEST_F(SequenceTest, KeysAreWhereBlendingErrs) {
