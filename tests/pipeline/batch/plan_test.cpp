@@ -49,12 +49,14 @@ TEST(Plan, NamesOfSculpts) {
 
 TEST(Plan, NamesOfSequences) {
   const BatchFolder folder;
-  for (const char* name : {"f/smoke_0001.obj", "f/smoke_0002.obj", "g/1.obj", "g/2.obj"}) folder.box(name);
+  for (const char* name : {"f/smoke_0001.obj", "f/smoke_0002.obj", "g/1.obj", "g/2.obj", "h/walk.1.fbx"}) folder.box(name);
   const BatchPlan plan = planBatch(folder.manifest("[[cloud]]\nsequence = 'f/smoke_####.obj'\nloop = true\n"
                                                    "[[cloud]]\nsequence = 'f'\n[[cloud]]\nsequence = 'g/*.obj'\n"
+                                                   "[[cloud]]\nsequence = 'h/walk.1.fbx'\nanimation = 'Walk'\n"
                                                    "[[cloud]]\nsequence = 'sprouting'\nseeds = [1, 2]\n"),
                                    {});
-  EXPECT_EQ(namesOf(plan.assets), (Names{"smoke.glb", "f.glb", "sequence.glb", "sprouting_1.glb", "sprouting_2.glb"}));
+  EXPECT_EQ(namesOf(plan.assets), (Names{"smoke.glb", "f.glb", "sequence.glb", "walk.1.glb", "sprouting_1.glb", "sprouting_2.glb"}));
+  EXPECT_TRUE(plan.assets[3].is_sequence && plan.assets[3].frames.empty()) << "its frames are in the file";
   EXPECT_EQ(plan.assets[0].frames.size(), 2U);
   EXPECT_TRUE(resolved(plan.assets[0]).sequence.loops);
   for (const auto& [text, message] :
