@@ -35,10 +35,12 @@ Settings settingsOf(const CommandLine& line, std::span<const Given> given, const
 }
 
 RunFile outputOf(const CommandLine& line) {
+  const RunFile file{line.output, "-o"};
+  if (line.command != kSequence) return file;
   Settings scratch;
   for (const Given& given : line.given)
     if (given.option->value.set) given.option->value.set(scratch, *given.option, given.value);
-  if (line.command != kSequence || scratch.sequence.output != SequenceOutput::kKeys) return {line.output, "-o"};
+  if (scratch.sequence.output != SequenceOutput::kKeys) return file;
   return {std::filesystem::path(line.output).replace_extension(), "-o", kKeyFileEnding, true};
 }
 

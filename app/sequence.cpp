@@ -33,8 +33,7 @@ std::vector<WrittenFile> keyFiles(const CloudSequence& sequence, const Settings&
   const std::filesystem::path stem = std::filesystem::path(settings.output.file).replace_extension();
   for (size_t s = 0; s < sequence.segments.size(); ++s)
     for (const SequenceKey& key : sequence.segments[s].keys) {
-      Sculpt sculpt;
-      sculpt.parts.push_back({"cloud", key.positions, key.normals, {}, sequence.segments[s].triangles, {}});
+      const Sculpt sculpt = sculptOf("cloud", {key.positions, key.normals, sequence.segments[s].triangles});
       const std::vector<std::vector<Lobe>> lobes{key.lobes};
       files.push_back({fmt::format("{}_{:02}_{:04}.glb", stem.string(), s + 1, key.frame),
                        encodeGlb(sculpt, lobes, sequence.info, settings.output.gltf, warnings)});

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <span>
 #include <type_traits>
+#include <vector>
 #ifndef CLOUDBAKE_SERIAL
 #include <atomic>
 
@@ -177,6 +179,22 @@ void parallelFor(Index first, Index last, const Body& body) {
 template <class Index, class Body>
 void parallelFor(Index count, const Body& body) {
   parallelFor(Index(0), count, body);
+}
+
+/// Calls body(i) for every i below `count`, also after one has thrown. Then it throws what the first one by number has thrown, so that the
+/// error is the same for any number of threads.
+template <class Body>
+void parallelForAll(size_t count, const Body& body) {
+  std::vector<std::exception_ptr> errors(count);
+  parallelFor(count, [&](size_t i) {
+    try {
+      body(i);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
 }
 
 /// For every chunk below `chunks`, calls work(chunk, slot) on any thread, then add(slot), one chunk after the other in their order. No slot

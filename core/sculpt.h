@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 #include <string_view>
 #include <vector>
 
@@ -89,6 +90,13 @@ struct Sculpt {
   std::vector<SculptImage> images{};
   double animation_seconds = 0;  ///< how long the animation is by which the sculpt was posed (ReadSettings::moment)
 };
+
+/// A sculpt of one part, in scene space.
+inline Sculpt sculptOf(std::string name, SurfaceMesh mesh) {
+  Sculpt sculpt;
+  sculpt.parts.push_back({std::move(name), std::move(mesh.positions), std::move(mesh.normals), {}, std::move(mesh.triangles), {}});
+  return sculpt;
+}
 
 /// The part of every vertex, in the order of the parts.
 std::vector<uint32_t> partsOfVertices(const Sculpt& sculpt);

@@ -1,6 +1,6 @@
 // The sequence of a GLB that is dropped on the page (docs/sequences.md), as a scene shows it.
 
-import { keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf } from '../engines/npm/sequence.js';
+import { boundsOf, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf } from '../engines/npm/sequence.js';
 import { readySequence } from './sequences.js';
 
 const CURE = 'take the file that `cloudbake sequence` wrote.';
@@ -38,12 +38,7 @@ export async function sequenceMesh(reader) {
   const ready = readySequence(sequence, sequence.segments.map(segment => readSegment(reader, segment, sequence, picture)));
   const most = sizeOf => Math.max(...ready.segments.map(sizeOf)), none = new Float32Array(0);
   const vertices = most(({ key }) => key.positions.length / 3), corners = most(({ triangles }) => triangles.length);
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (const { positions } of ready.segments.flatMap(({ keys }) => keys))
-    for (let i = 0; i < positions.length; ++i) {
-      low[i % 3] = Math.min(low[i % 3], positions[i]);
-      high[i % 3] = Math.max(high[i % 3], positions[i]);
-    }
+  const [low, high] = boundsOf(ready.segments.flatMap(({ keys }) => keys));
   return {
     vertices, corners, low, high, harmonicsPerVertex: 0, room: corners, sequence: { of: 0, by: [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0] },
     arrays: {

@@ -7,7 +7,7 @@ import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { TransformNode } from '@babylonjs/core/Meshes/transformNode.js';
 import { settingsOf } from './asset.js';
 import { CloudMaterial } from './babylon.js';
-import { emptyKey, shownAt, shownSegments, writeKeyAt } from './sequence.js';
+import { boundsOf, emptyKey, shownAt, shownSegments, writeKeyAt } from './sequence.js';
 import { setFading } from './sequence_fade.js';
 import { readSequence } from './sequence_file.js';
 
@@ -15,17 +15,6 @@ import { readSequence } from './sequence_file.js';
 /** @type {[string, string, number][]} */
 const ATTRIBUTES = [['positions', VertexBuffer.PositionKind, 3], ['normals', VertexBuffer.NormalKind, 3],
   ['first', VertexBuffer.UVKind, 2], ['second', VertexBuffer.UV2Kind, 2]];
-
-// The bounds of a segment at all times: what lies between two keys is within them.
-function boundsOf(keys) {
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (const { positions } of keys)
-    for (let i = 0; i < positions.length; ++i) {
-      low[i % 3] = Math.min(low[i % 3], positions[i]);
-      high[i % 3] = Math.max(high[i % 3], positions[i]);
-    }
-  return [low, high];
-}
 
 export class CloudSequence extends TransformNode {
   static async load(url, scene) {

@@ -70,6 +70,20 @@ export function shownAt(sequence, seconds) {
   return [{ part: first === segment ? 1 : first, frame: seen[0].frame, shown: [weight, 1] }, later];
 }
 
+/**
+ * The lowest and the highest corner of a box that holds these keys, and so what lies between two of them.
+ * @param {Pick<Key, 'positions'>[]} keys
+ */
+export function boundsOf(keys) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const { positions } of keys)
+    for (let i = 0; i < positions.length; ++i) {
+      low[i % 3] = Math.min(low[i % 3], positions[i]);
+      high[i % 3] = Math.max(high[i % 3], positions[i]);
+    }
+  return [low, high];
+}
+
 /** @param {number} vertices @returns {Key} */
 export const emptyKey = vertices => ({ positions: new Float32Array(3 * vertices), normals: new Float32Array(3 * vertices),
   first: new Float32Array(2 * vertices), second: new Float32Array(2 * vertices) });

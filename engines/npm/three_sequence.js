@@ -1,7 +1,7 @@
 // Clouds that change (`cloudbake sequence`), in three.js.
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh, Sphere, Vector3 } from 'three';
 import { settingsOf } from './asset.js';
-import { emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf, shownAt, shownSegments, writeKeyAt } from './sequence.js';
+import { CURE, emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf, shownAt, shownSegments, writeKeyAt } from './sequence.js';
 import { setFading } from './sequence_fade.js';
 import { CloudMaterial } from './three.js';
 
@@ -20,8 +20,7 @@ function numbersOf(attribute, width) {
 async function keyOf(parser, attributes) {
   const key = emptyKey(0);
   for (const [name, , set, width] of ATTRIBUTES) {
-    if (attributes[set] === undefined)
-      throw new Error(`a key of the sequence has no ${set}: take the file that \`cloudbake sequence\` wrote`);
+    if (attributes[set] === undefined) throw new Error(`a key of the sequence has no ${set}: ${CURE}`);
     key[name] = numbersOf(await parser.getDependency('accessor', attributes[set]), width);
   }
   return key;
@@ -29,8 +28,7 @@ async function keyOf(parser, attributes) {
 
 async function pictureOf(parser) {
   const image = parser.json.images?.find(({ name }) => name === 'keys');
-  if (image?.bufferView === undefined)
-    throw new Error('the sequence has lost the picture of its keys: take the file that `cloudbake sequence` wrote');
+  if (image?.bufferView === undefined) throw new Error(`the sequence has lost the picture of its keys: ${CURE}`);
   return pixelsOfPng(await parser.getDependency('bufferView', image.bufferView));
 }
 
@@ -43,10 +41,10 @@ function boundsOf(keys) {
 
 async function segmentOf(parser, sequence, segment, picture) {
   const primitive = parser.json.meshes?.[segment.mesh]?.primitives[0];
-  if (!primitive) throw new Error('a segment of the sequence has no mesh: take the file that `cloudbake sequence` wrote');
+  if (!primitive) throw new Error(`a segment of the sequence has no mesh: ${CURE}`);
   const base = await keyOf(parser, primitive.attributes), targets = primitive.targets ?? [];
   if (!picture && targets.length !== segment.frames.length - 1)
-    throw new Error('a key of the sequence has no morph target: take the file that `cloudbake sequence` wrote');
+    throw new Error(`a key of the sequence has no morph target: ${CURE}`);
   const keys = picture ? keysOfPicture(picture, sequence, segment, base.positions.length / 3)
     : keysOfTargets(base, await Promise.all(targets.map(target => keyOf(parser, target))));
   return { ...segment, keys, ...boundsOf(keys), index: await parser.getDependency('accessor', primitive.indices) };

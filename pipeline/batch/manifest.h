@@ -41,8 +41,7 @@ struct Manifest {
 ///   [defaults] OPTION = VALUE   with _ for -
 ///   [scene]                     the tables of a scene file (pipeline/scene/scene_file.h): [scene.camera], [scene.picture], [scene.sun]
 ///   [[cloud]]                   preset = 'NAME' | recipe = 'FILE' | rules = 'FILE' | from_spheres = 'FILE' | sculpt = 'GLOB' or [GLOB, …]
-///   |
-///                               sequence = 'FRAMES', as of `cloudbake sequence`;
+///                               | sequence = 'FRAMES', as of `cloudbake sequence`;
 ///                               seeds = [1, 2, …] or 'LOW-HIGH', name = 'TEMPLATE', OPTION = VALUE
 /// Names of options are not checked here. Throws IoError, and InputError with file, line and column for a syntax error, an
 /// unknown table or key at the top level, a wrong type, a cloud with no source or with two, or no cloud at all.

@@ -226,14 +226,14 @@ void addSculpt(BatchPlan& plan, const fs::path& file, const std::optional<fs::pa
   addAsset(plan, std::move(asset), request);
 }
 
-void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input, Request request) {
-  const bool is_preset = cloud.kind == SourceKind::kPreset;
+void addGrown(BatchPlan& plan, const ManifestCloud& cloud, SourceKind kind, const fs::path& input, Request request) {
+  const bool is_preset = kind == SourceKind::kPreset;
   const std::string stem = is_preset ? input.string() : input.stem().string();
   const std::vector<Given> own = request.own;
   for (size_t i = 0; i < std::max<size_t>(1, cloud.seeds.size()); ++i) {
     PlannedAsset asset;
     asset.is_sequence = cloud.is_sequence;
-    asset.from.kind = cloud.kind;
+    asset.from.kind = kind;
     asset.from.input = input;
     asset.source = is_preset ? "preset " + stem : input.string();
     Words words{{"stem", stem}, {"ext", is_preset ? "" : input.extension().string().substr(1)}, {"folder", ""}};
@@ -279,38 +279,30 @@ fs::path besideManifest(const Manifest& manifest, const std::string& named) {
   return fs::path(named).is_absolute() ? fs::path(named) : manifest.file.parent_path() / named;
 }
 
-ManifestCloud cloudOfKind(ManifestCloud cloud, SourceKind kind) {
-  cloud.kind = kind;
-  return cloud;
-}
-
 void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cloud, Request request, std::set<fs::path>& folders) {
   const std::string file = manifest.file.string();
   request.own = optionsOf(cloud.options, manifest, cloud.is_sequence);
   if (cloud.name) request.name = cloud.name;
   for (const ManifestValue& source : cloud.sources) {
     request.place = source;
-    if (cloud.is_sequence && !isGrown(sourceKindOf(source.value))) {
+    const SourceKind kind = cloud.is_sequence ? sourceKindOf(source.value) : cloud.kind;
+    if (cloud.is_sequence && !isGrown(kind)) {
       if (!cloud.seeds.empty()) refuseAt(source, file, "'seeds' are for clouds that grow from rules: remove it");
       const fs::path path = besideManifest(manifest, source.value);
       addFrames(plan, path, request);
       folders.insert(fs::is_directory(path) ? path : path.parent_path());
       continue;
     }
-    if (cloud.is_sequence && findPreset(source.value)) {
-      addGrown(plan, cloudOfKind(cloud, SourceKind::kPreset), source.value, request);
-      continue;
-    }
-    if (cloud.kind == SourceKind::kPreset) {
+    if (kind == SourceKind::kPreset) {
       if (!findPreset(source.value)) refuseAt(source, file, "no preset '" + source.value + "': the presets are " + presetNames());
-      addGrown(plan, cloud, source.value, request);
+      addGrown(plan, cloud, kind, source.value, request);
       continue;
     }
     const fs::path path = besideManifest(manifest, source.value);
-    if (cloud.kind != SourceKind::kSculpt || cloud.is_sequence) {
+    if (kind != SourceKind::kSculpt) {
       if (!fs::is_regular_file(path))
         refuseAt(source, file, "no file '" + path.string() + "': check its name; paths are relative to the manifest");
-      addGrown(plan, cloud.is_sequence ? cloudOfKind(cloud, SourceKind::kRecipe) : cloud, path, request);
+      addGrown(plan, cloud, kind, path, request);
       continue;
     }
     std::vector<fs::path> sculpts = filesMatching(path, folders);

@@ -128,9 +128,7 @@ void checkKeys(const Settings& settings, const std::string& bytes, CheckReport& 
     figures.seal = sequence.seal == sealOf(sequence) ? SequenceFigures::Seal::kWhole : SequenceFigures::Seal::kBroken;
   watch.lap(report.run.seconds, "keys");
 
-  for (size_t i = 0; i < figures.keys.size(); ++i)
-    if (figures.keys[i].is_key && !(figures.keys[i].transmittance_rms <= figures.keys[figures.worst].transmittance_rms)) figures.worst = i;
-  const KeyFigures& worst = figures.keys[figures.worst];
+  const KeyFigures& worst = *worstOf(figures, true);
   BakedMesh mesh = meshAt(sequence, {worst.segment, worst.frame});
   CheckedAsset asset;
   asset.has_metadata = true;
@@ -139,10 +137,7 @@ void checkKeys(const Settings& settings, const std::string& bytes, CheckReport& 
   asset.to_scene.resize(asset.lobes.size());
   for (const Lobe& lobe : asset.lobes)
     report.file.uvs.push_back({{lobe.direction.x, lobe.direction.y}, {lobe.direction.z, lobe.thickness}});
-  Sculpt sculpt;
-  sculpt.parts.push_back(
-      {"cloud", std::move(mesh.surface.positions), std::move(mesh.surface.normals), {}, std::move(mesh.surface.triangles), {}});
-  asset.cloud = cloudOfAsset(std::move(sculpt), settings, report, watch);
+  asset.cloud = cloudOfAsset(sculptOf("cloud", std::move(mesh.surface)), settings, report, watch);
   judgeLobes(asset, settings, report);
   if (report.verdict)
     report.verdict->what = fmt::format("the key at frame {:g}: {}", worst.frame, report.verdict->what);

@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <exception>
 #include <utility>
 #include <vector>
 
 #include "bake/lobe/sweep.h"
+#include "bake/truth/error_metrics.h"
 #include "core/error.h"
-#include "core/lobe_lighting.h"
 #include "core/parallel.h"
+#include "core/sculpt.h"
 #include "pipeline/check/bake_anew.h"
+#include "pipeline/fields/fields.h"
 #include "pipeline/sources/sculpt.h"
 
 namespace cloudbake {
@@ -34,23 +34,14 @@ double foldedShare(const SurfaceMesh& mesh) {
   return double(folded) / double(std::max<size_t>(1, mesh.triangles.size()));
 }
 
-// The rms of T over the sampled vertices and lights between the lobes of a mesh and those of a new bake.
-double differenceOfT(const BakedMesh& mesh, const MeshSettings& settings, const std::vector<Vec3>& lights) {
-  Sculpt sculpt;
-  sculpt.parts.push_back({"cloud", mesh.surface.positions, mesh.surface.normals, {}, mesh.surface.triangles, {}});
+// The rms of T, over the sampled vertices and the lights, between the lobes of a mesh and those of a new bake.
+double differenceOfT(BakedMesh mesh, const MeshSettings& settings, const std::vector<Vec3>& lights) {
   BakeReport report;
   Stopwatch watch;
-  const Cloud cloud = cloudOfSculpt(std::move(sculpt), settings, report, watch);
+  const Cloud cloud = cloudOfSculpt(sculptOf("cloud", std::move(mesh.surface)), settings, report, watch);
   Warnings told_by_the_bake;
   const NewBake anew = bakeAnew(cloud, mesh.info, settings, kVertices, told_by_the_bake);
-  double squares = 0;
-  for (size_t i = 0; i < anew.vertices.size(); ++i)
-    for (const Vec3& light : lights) {
-      const auto seen = [&](const Lobe& lobe) { return double(lobeTransmittance(lobe, light, mesh.info.shape, mesh.info.extinction)); };
-      const double difference = seen(mesh.lobes[anew.vertices[i]]) - seen(anew.lobes[i]);
-      squares += difference * difference;
-    }
-  return std::sqrt(squares / double(std::max<size_t>(1, anew.vertices.size() * lights.size())));
+  return compareLobeTransmittance(pick(mesh.lobes, anew.vertices), anew.lobes, mesh.info.shape, lights, mesh.info.extinction).rms;
 }
 
 std::string placeOf(const KeyFigures& one) {
@@ -69,21 +60,16 @@ SequenceFigures measureKeys(const CloudSequence& sequence, const MeshSettings& m
     }
   }
   const std::vector<Vec3> lights = bothSenses(sweepAxes(kLightsOfKeys));
-  std::vector<std::exception_ptr> errors(figures.keys.size());
-  parallelFor(figures.keys.size(), [&](size_t i) {
+  parallelForAll(figures.keys.size(), [&](size_t i) {
     KeyFigures& one = figures.keys[i];
     try {
-      const BakedMesh own = meshAt(sequence, {one.segment, one.frame});
-      one.transmittance_rms = differenceOfT(own, mesh, lights);
+      BakedMesh own = meshAt(sequence, {one.segment, one.frame});
       one.folded = foldedShare(own.surface);
+      one.transmittance_rms = differenceOfT(std::move(own), mesh, lights);
     } catch (const InputError& error) {
-      errors[i] = std::make_exception_ptr(InputError(error.file, placeOf(one) + ": " + error.message));
-    } catch (...) {
-      errors[i] = std::current_exception();
+      throw InputError(error.file, placeOf(one) + ": " + error.message);
     }
   });
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
   return figures;
 }
 

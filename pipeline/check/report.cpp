@@ -56,28 +56,21 @@ std::string certificateText(const CertificateFigures& c) {
                     : "");
 }
 
-// The worst of the keys, or of the moments between them; null if there is none.
-const KeyFigures* worstOf(const SequenceFigures& figures, bool of_keys) {
-  const KeyFigures* worst = nullptr;
-  for (const KeyFigures& one : figures.keys)
-    if (one.is_key == of_keys && (!worst || !(one.transmittance_rms <= worst->transmittance_rms))) worst = &one;
-  return worst;
-}
-
 std::string sequenceText(const SequenceFigures& figures) {
   const auto keys = std::count_if(figures.keys.begin(), figures.keys.end(), [](const KeyFigures& one) { return one.is_key; });
   const KeyFigures &key = *worstOf(figures, true), *between = worstOf(figures, false);
-  std::string text = figureLine("sequence", "{} keys, {} segments; since the bake: {}", keys, figures.keys.back().segment + 1,
+  const size_t segments = figures.keys.back().segment + 1;
+  std::string text = figureLine("sequence", "{} keys, {} {}; since the bake: {}", keys, segments, segments == 1 ? "segment" : "segments",
                                 figures.seal == SequenceFigures::Seal::kNone    ? "not known, there is no seal"
                                 : figures.seal == SequenceFigures::Seal::kWhole ? "the same"
                                                                                 : "changed");
-  text += figureLine("new bakes", "T differs by at most {:.4f} rms of keys (frame {:g})", key.transmittance_rms, key.frame);
-  if (between) text += figureLine("", "and {:.4f} between two keys (frame {:g})", between->transmittance_rms, between->frame);
+  text += figureLine("new bakes", "T differs by at most {:.4f} rms at a key (frame {:g})", key.transmittance_rms, key.frame);
+  if (between) text += figureLine("", "and by {:.4f} between two keys (frame {:g})", between->transmittance_rms, between->frame);
   return text + figureLine("worst key", "frame {:g} of segment {}:", key.frame, key.segment + 1);
 }
 
 Json sequenceJson(const SequenceFigures& figures) {
-  Json json = {{"worst_key", figures.worst}, {"keys", Json::array()}};
+  Json json = {{"worst_key", worstOf(figures, true) - figures.keys.data()}, {"keys", Json::array()}};
   if (figures.seal != SequenceFigures::Seal::kNone) json["changed"] = figures.seal == SequenceFigures::Seal::kBroken;
   for (const KeyFigures& one : figures.keys)
     json["keys"].push_back({{"segment", one.segment},
@@ -141,6 +134,13 @@ Json diagnosisJson(const Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+const KeyFigures* worstOf(const SequenceFigures& figures, bool of_keys) {
+  const KeyFigures* worst = nullptr;
+  for (const KeyFigures& one : figures.keys)
+    if (one.is_key == of_keys && (!worst || !(one.transmittance_rms <= worst->transmittance_rms))) worst = &one;
+  return worst;
+}
 
 std::string checkText(const CheckReport& report) {
   const BakeReport& run = report.run;

@@ -63,8 +63,9 @@ struct KeyFigures {
 struct SequenceFigures {
   std::vector<KeyFigures> keys;
   enum class Seal { kNone, kWhole, kBroken } seal = Seal::kNone;  ///< kBroken: numbers have changed since the bake
-  size_t worst = 0;                                               ///< the key whose CheckReport::figures are
 };
+/// The worst of the keys, or of the moments between them; null if there is none.
+const KeyFigures* worstOf(const SequenceFigures& figures, bool of_keys);
 
 struct CheckReport {
   BakeReport run;  ///< input, metadata, counts, seconds, warnings

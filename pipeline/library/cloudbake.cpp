@@ -70,16 +70,15 @@ BakeResult bake(SurfaceMesh mesh, const Options& options, const StageListener& o
   const std::vector<Given> given = givenBy(options, kBake);
   for (const Given& one : given)
     if (one.option->bits & kOfInputFile) throw UsageError("--" + std::string(one.option->name) + " is for files: leave it out for a mesh");
-  return bakeCloud(
-      "bake", resolve(sourceOfFile("mesh"), given), on_stage, [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
-        Sculpt sculpt;
-        sculpt.parts.push_back({"mesh", std::move(mesh.positions), std::move(mesh.normals), {}, std::move(mesh.triangles), {}});
-        checkSculpt("mesh", sculpt, report.warnings);
-        report.input = "mesh";
-        Cloud cloud = namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
-        refineCloud(cloud, settings, report, watch);
-        return cloud;
-      });
+  return bakeCloud("bake", resolve(sourceOfFile("mesh"), given), on_stage,
+                   [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
+                     Sculpt sculpt = sculptOf("mesh", std::move(mesh));
+                     checkSculpt("mesh", sculpt, report.warnings);
+                     report.input = "mesh";
+                     Cloud cloud = namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
+                     refineCloud(cloud, settings, report, watch);
+                     return cloud;
+                   });
 }
 
 BakeResult bake(const std::filesystem::path& file, const Options& options, const StageListener& on_stage) {

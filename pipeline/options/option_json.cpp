@@ -172,7 +172,7 @@ Json manifestSchema() {
 
   Json cloud = options;
   for (const Option& option : optionTable())
-    if (option.commands == kSequence) cloud[underscored(option.name)] = optionSchema(option);
+    if (isOfSequence(option)) cloud[underscored(option.name)] = optionSchema(option);
   Json names = Json::array();
   for (const Preset& preset : presets()) names.push_back(preset.name);
   Json sources = Json::array();
@@ -218,7 +218,7 @@ Json recipeSchema() {
   Json bake = Json::object(), sequence = Json::object();
   for (const Option& option : optionTable()) {
     if (option.bits & kInRecipe) bake[underscored(option.name)] = optionSchema(option);
-    if (option.commands == kSequence) sequence[underscored(option.name)] = optionSchema(option);
+    if (isOfSequence(option)) sequence[underscored(option.name)] = optionSchema(option);
   }
   top["bake"] = described(tableOf(bake), "options of `cloudbake grow`");
   top["sequence"] = described(tableOf(sequence), "options of `cloudbake sequence`");

@@ -102,6 +102,9 @@ inline bool isOptionalUnit(std::string_view unit) { return unit.starts_with('[')
 /// Whether this is an option of the bake of `view --watch`. Without --watch, view does not take it.
 inline bool needsWatch(const Option& option) { return (option.commands & (kBake | kView | kPreview)) == (kBake | kView); }
 
+/// Whether only `sequence` has the option: what it takes of the frames, not how it bakes them.
+inline bool isOfSequence(const Option& option) { return option.commands == kSequence; }
+
 /// The heading of the option in the help of a command.
 std::string groupOf(const Option& option, Command command);
 

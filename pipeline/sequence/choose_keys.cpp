@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "bake/lobe/sweep.h"
 #include "bake/sequence/follow_surface.h"
-#include "core/lobe_lighting.h"
+#include "bake/truth/error_metrics.h"
 #include "core/parallel.h"
 #include "preview/compare/popping.h"
 
@@ -83,16 +82,8 @@ class Chooser {
   }
 
   double transmittanceRms(size_t frame, size_t from, size_t to) const {
-    const SequenceKey between = blended(frame, from, to);
-    const std::vector<Lobe>& own = all_.keys[frame].lobes;
-    double squares = 0;
-    for (size_t v = 0; v < own.size(); ++v)
-      for (const Vec3& light : lights_) {
-        const auto seen = [&](const Lobe& lobe) { return lobeTransmittance(lobe, light, sequence_.info.shape, sequence_.info.extinction); };
-        const double difference = double(seen(own[v])) - seen(between.lobes[v]);
-        squares += difference * difference;
-      }
-    return std::sqrt(squares / double(std::max<size_t>(1, own.size() * lights_.size())));
+    const AssetInfo& info = sequence_.info;
+    return compareLobeTransmittance(blended(frame, from, to).lobes, all_.keys[frame].lobes, info.shape, lights_, info.extinction).rms;
   }
 
   const CloudSequence& sequence_;

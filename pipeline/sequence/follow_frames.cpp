@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -86,21 +85,6 @@ Record recordOf(const std::string& bytes) {
   return record;
 }
 
-// Calls work(0) … work(count - 1) on several threads. Of what they throw, the first one by number is thrown.
-template <class Work>
-void forAll(size_t count, const Work& work) {
-  std::vector<std::exception_ptr> errors(count);
-  parallelFor(count, [&](size_t i) {
-    try {
-      work(i);
-    } catch (...) {
-      errors[i] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
-}
-
 // --- Frames as they are read ---
 
 struct LoadedFrame {
@@ -130,7 +114,7 @@ class Frames {
     for (const size_t i : wanted)
       if (!loaded_.contains(i)) missing.push_back(i);
     std::vector<std::unique_ptr<LoadedFrame>> fresh(missing.size());
-    forAll(missing.size(), [&](size_t k) { fresh[k] = load(inputs_[missing[k]]); });
+    parallelForAll(missing.size(), [&](size_t k) { fresh[k] = load(inputs_[missing[k]]); });
     for (size_t k = 0; k < missing.size(); ++k) {
       if (const auto known = hashes_.find(missing[k]);
           known != hashes_.end() && !inputs_[missing[k]].file.empty() && known->second.own != fresh[k]->hash)
@@ -235,7 +219,7 @@ SurfaceMesh reduced(const SurfaceMesh& outer, const Settings& settings, Warnings
 // Whether an option only counts once the frames have been followed and baked.
 bool isAfterFollowing(const Option& option) {
   constexpr std::string_view kNames[] = {"fps", "change", "pixels", "fade", "loop", "as"};
-  return option.commands == kSequence && std::find(std::begin(kNames), std::end(kNames), option.name) != std::end(kNames);
+  return isOfSequence(option) && std::find(std::begin(kNames), std::end(kNames), option.name) != std::end(kNames);
 }
 
 // The largest of the first, the middle and the last frame decides.
@@ -424,7 +408,7 @@ class Follower {
     unbaked_.clear();
     std::vector<std::pair<LoadedFrame*, std::vector<Place>*>> work;
     for (auto& [i, places] : by_frame) work.emplace_back(&frames_.at(i), &places);
-    forAll(work.size(), [&](size_t k) {
+    parallelForAll(work.size(), [&](size_t k) {
       for (const Place& place : *work[k].second) bakeAt(*work[k].first, place);
     });
     watch_.lap(report_.seconds, "bake");

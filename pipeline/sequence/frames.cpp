@@ -114,6 +114,21 @@ bool isVariable(const std::string& name, const GrownSource& source) {
          std::any_of(declared.begin(), declared.end(), [&](const auto& variable) { return variable.first == name; });
 }
 
+// Reads a frame. Errors of its file name the frame, which may be a moment of that file.
+template <class Read>
+Cloud namingFrame(const FrameInput& frame, const Read& read) {
+  const std::string file = frame.file.string();
+  try {
+    return read();
+  } catch (const MemoryError& error) {
+    if (error.file != file) throw;
+    throw MemoryError(frame.name, error.message);
+  } catch (const InputError& error) {
+    if (error.file != file) throw;
+    throw InputError(frame.name, error.line, error.column, error.message);
+  }
+}
+
 }  // namespace
 
 std::vector<FrameInput> frameFiles(const fs::path& input) {
@@ -217,25 +232,6 @@ std::vector<FrameInput> grownFrames(const SequenceSettings& settings, const Grow
   }
   return frames;
 }
-
-namespace {
-
-// Reads a frame. Errors of its file name the frame, which may be a moment of that file.
-template <class Read>
-Cloud namingFrame(const FrameInput& frame, const Read& read) {
-  const std::string file = frame.file.string();
-  try {
-    return read();
-  } catch (const MemoryError& error) {
-    if (error.file != file) throw;
-    throw MemoryError(frame.name, error.message);
-  } catch (const InputError& error) {
-    if (error.file != file) throw;
-    throw InputError(frame.name, error.line, error.column, error.message);
-  }
-}
-
-}  // namespace
 
 std::vector<FrameInput> madeFrames(Settings& settings, const std::optional<GrownSource>& source) {
   if (source) return grownFrames(settings.sequence, *source);

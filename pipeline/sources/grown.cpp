@@ -31,7 +31,7 @@ GrownSource sourceOfRecipe(CloudRecipe recipe, const std::filesystem::path& file
   }
   for (const auto& [key, value, line] : recipe.sequence_options) {
     const Option* option = findOption(key, kSequence);
-    if (!option || option->commands != kSequence)
+    if (!option || !isOfSequence(*option))
       throw InputError(source.file, line, "unknown key '" + key + "' in [sequence]: `cloudbake sequence --help` lists the options");
     source.of_sequence.push_back({option, value, source.file, line, 0});
   }
@@ -153,7 +153,7 @@ Cloud growCloud(GrownSource source, const Settings& settings, const std::optiona
     const FieldSettings& field = settings.field;
     cloud.exact_spheres = field.blend.value == 0 && (!field.noise || field.noise->value == 0) && !field.flat_base && !has_budget;
     cloud.closed = findDefects(cloud.surface).unmatched_edges == 0;
-    cloud.sculpt.parts.push_back({source.name, cloud.surface.positions, cloud.surface.normals, {}, cloud.surface.triangles, {}});
+    cloud.sculpt = sculptOf(source.name, cloud.surface);
     return cloud;
   };
   return namingFile(source.file, [&] { return inStage("growing this cloud", "use fewer --generations or --voxels", grow); });

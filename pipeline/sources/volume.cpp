@@ -26,8 +26,7 @@ Cloud readVolume(const Settings& settings, BakeReport& report, Stopwatch& watch)
     cloud.surface = meshFromLevelSet(*cloud.level_set, {settings.mesh.vertices}, report.warnings);
     requireUsableSize(boundingBox(cloud.surface));
     cloud.closed = findDefects(cloud.surface).unmatched_edges == 0;
-    const std::string name = file.stem().string();
-    cloud.sculpt.parts.push_back({name, cloud.surface.positions, cloud.surface.normals, {}, cloud.surface.triangles, {}});
+    cloud.sculpt = sculptOf(file.stem().string(), cloud.surface);
     watch.lap(report.seconds, "surface");
     return cloud;
   };

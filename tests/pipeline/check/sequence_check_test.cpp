@@ -59,7 +59,7 @@ TEST_P(SequenceCheck, AGrowingBallIsSound) {
   EXPECT_EQ(report.sequence->keys.size(), 5U) << "three keys and two moments between them";
   EXPECT_EQ(report.sequence->seal, SequenceFigures::Seal::kWhole);
   for (const KeyFigures& one : report.sequence->keys) EXPECT_LT(one.transmittance_rms, 0.03) << one.frame;
-  EXPECT_NE(checkText(report).find("3 keys, 1 segments; since the bake: the same"), std::string::npos) << checkText(report);
+  EXPECT_NE(checkText(report).find("3 keys, 1 segment; since the bake: the same"), std::string::npos) << checkText(report);
 }
 
 TEST_P(SequenceCheck, NamesTheFrameAndTheCause) {
