@@ -4,8 +4,8 @@
 #include <array>
 #include <memory>
 #include <string>
-#include <utility>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/types.h"
