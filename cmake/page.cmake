@@ -22,7 +22,7 @@ function(cloudbake_page output module)
     string(REGEX REPLACE "\n\n+" "\n" text "${text}")
     string(APPEND SCRIPTS "<script type=\"x-shader/x-fragment\" id=\"shader ${name}\">${text}</script>\n")
   endforeach()
-  execute_process(COMMAND ${ESBUILD} ${module} --bundle --format=esm --charset=utf8 --log-level=warning
+  execute_process(COMMAND ${ESBUILD} ${module} --bundle --format=esm --minify-whitespace --charset=utf8 --log-level=warning
                   OUTPUT_VARIABLE script COMMAND_ERROR_IS_FATAL ANY)
   if(script MATCHES "</script")
     message(FATAL_ERROR "${module} has in it what ends a script")

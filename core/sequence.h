@@ -35,6 +35,7 @@ struct CloudSequence {
   bool loops = false;
   double period = 0;  ///< frames: of a loop, those after which it is at its beginning again; else the last frame
   std::vector<SequenceSegment> segments;
+  int pixels = 0;    ///< that its longest side covers in pictures for which it is made; 0: unknown, as of a file
   std::string seal;  ///< of a file: what sealOf was when it was written; empty: the file has none
 };
 

@@ -8,7 +8,7 @@
 
 namespace cloudbake {
 
-inline constexpr int kFastest = 1, kSmallest = 9;  ///< zlib's levels
+inline constexpr int kFastest = 1, kUsual = 6, kSmallest = 9;  ///< zlib's levels
 
 /// Throws std::bad_alloc.
 std::string deflated(std::string_view bytes, int level = kFastest);

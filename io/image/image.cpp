@@ -1,20 +1,38 @@
-// stb_image_write compresses the pixels with its own deflate, without threads or state that changes between calls. Its defaults
-// (compression level 8, filter chosen per row) are never changed, so equal pixels give equal bytes.
+// stb_image_write chooses a filter per row, and zlib compresses. Neither has threads or state that changes between calls, so equal pixels
+// give equal bytes.
 #include "io/image/image.h"
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 
 #include "core/error.h"
 #include "core/text/maker.h"
+#include "io/file/deflate.h"
 #include "io/image/png_chunk.h"
+
+namespace {
+
+// For stb_image_write, which frees the result. Its own deflate takes as long for 1.2 to 1.9 times as many bytes.
+unsigned char* zlibCompressed(unsigned char* data, int count, int* size, int) {
+  const std::string zlib = cloudbake::deflated({reinterpret_cast<const char*>(data), size_t(count)}, cloudbake::kUsual);
+  auto* result = static_cast<unsigned char*>(std::malloc(zlib.size()));
+  if (!result) return nullptr;
+  std::memcpy(result, zlib.data(), zlib.size());
+  *size = int(zlib.size());
+  return result;
+}
+
+}  // namespace
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
+#define STBIW_ZLIB_COMPRESS zlibCompressed
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO

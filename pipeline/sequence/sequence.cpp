@@ -56,6 +56,7 @@ BakedSequence bakeSequence(const std::vector<FrameInput>& frames, const Settings
   sequence.frames_per_second = settings.sequence.frames_per_second.value_or(kFramesPerSecond);
   sequence.loops = settings.sequence.loops;
   sequence.period = periodOf(frames, settings.sequence);
+  sequence.pixels = settings.sequence.pixels;
   for (size_t s = 0; s < followed.segments.size(); ++s) {
     FollowedSegment& own = followed.segments[s];
     SequenceSegment all{own.triangles, {}};

@@ -295,7 +295,7 @@ async function isShut(browser) {
 async function isAccessible(page) {
   for (const [name, [width, height]] of Object.entries(WINDOWS)) {
     await page.setViewportSize({ width, height });
-    await open(page, 'two.html', 'look=plain');  // which is drawn soonest
+    await open(page, 'two.html', '');
     const is_open = await page.evaluate(() => document.getElementById('panel').open);
     demand(is_open === width >= 900, `on a ${name} the panel is ${is_open ? 'open' : 'folded'}`);
     await leavesTheCloud(page, `the page on a ${name}`);

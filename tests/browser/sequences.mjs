@@ -3,11 +3,11 @@
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, WINDOWS, after, bare, canvasValues, checkAccess, demand, percent, pngValues, settled, staysStill, testFolder,
+import { WINDOWS, after, canvasValues, checkAccess, demand, percent, pngValues, settled, staysStill, testFolder,
   testPage } from './browser.mjs';
 import { changedGlb, chunksOf } from './glb.mjs';
 
-const { folder, run, open } = testFolder(), FPS = 12;
+const { folder, run, open } = testFolder(), FPS = 12, SIZE = [240, 160], bare = `ui=0&size=${SIZE.join('x')}`;
 const WORDS = ['humilis', '--vary', 'size=0.5:0.8', '--frame-count', '8', '--vertices', '800', '--voxels', '60', '--change', '0.2',
   '--fade', '2', '--fps', String(FPS)];
 // The share of values within 2 of 255 that is demanded, and how many times farther off a mistake must be.
@@ -254,7 +254,7 @@ async function inScenes(page) {
 
 // The bar of a folded panel does not cover the cloud at its largest.
 async function inWindows(page) {
-  run('view', 'grows.glb', '--look', 'plain', '-o', 'page.html');
+  run('view', 'grows.glb', '-o', 'page.html');
   for (const name of ['laptop', 'phone']) {
     const [width, height] = WINDOWS[name];
     await page.setViewportSize({ width, height });

@@ -3,7 +3,7 @@
 import { readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, compare, demand, pngValues, settled, staysStill, testFolder, testPage, unfold } from './browser.mjs';
+import { bare, canvasValues, compare, demand, pngValues, settled, staysStill, testFolder, testPage, unfold } from './browser.mjs';
 import { sceneAfter, withWatchedSculpt } from './watched.mjs';
 
 const test = testFolder(), { folder, run, open } = test;
@@ -91,8 +91,8 @@ async function isCompared(page) {
   run('grow', 'hero', '--vertices', '6000', '-o', 'hero.glb');
   run('grow', 'congestus', '--vertices', '4000', '--basis', 'sh2', '-o', 'harmonics.glb');
   run('view', 'hero.glb', 'harmonics.glb', '--compare', '-o', 'compared.html');
-  const pictureOf = async hash => {
-    await open(page, 'compared.html', `${bare}&${hash}`);
+  const small = [150, 100], pictureOf = async hash => {
+    await open(page, 'compared.html', `ui=0&size=${small.join('x')}&${hash}`);
     return canvasValues(page);
   };
   const lobes = await pictureOf(''), left = await pictureOf('look=plain');
@@ -101,8 +101,8 @@ async function isCompared(page) {
     demand(share < 0.95 && share > 0.3, `light by ${light} is another picture: ${(100 * share).toFixed(1)} % are equal`);
     const half = await pictureOf(`look=plain&against=${light}`);
     const right = await pictureOf(`look=plain&light=${light}`);
-    const column = i => Math.floor(i / 3) % SIZE[0];
-    demand(half.every((x, i) => x === (column(i) < SIZE[0] / 2 ? left : right)[i]),
+    const column = i => Math.floor(i / 3) % small[0];
+    demand(half.every((x, i) => x === (column(i) < small[0] / 2 ? left : right)[i]),
       `${light} beside the lobe: each half is its own picture`);
   }
   for (const show of ['drawn', 'softened', 'sun', 'depth'])

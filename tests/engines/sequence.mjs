@@ -108,7 +108,7 @@ const largestOf = (a, b) => a.reduce((most, x, i) => Math.max(most, Math.abs(x -
 // The keys of the two forms, and of the assets of `--as keys`, are the same within the steps of the picture; and times lead to segments.
 function sameKeys(kit, of_picture, of_morph) {
   const pairs = of_picture.segments.flatMap((segment, s) => segment.keys.map((key, k) => [key, of_morph.segments[s].keys[k]]));
-  const [low, high] = of_picture.box, step = Math.max(...low.map((x, i) => high[i] - x)) / 65535;
+  const [low, high] = of_picture.box, step = Math.max(...low.map((x, i) => high[i] - x)) / 4096;
   const off = name => Math.max(...pairs.map(([a, b]) => largestOf(a[name], b[name])));
   demand(off('positions') < 0.6 * step && off('normals') < 0.02 && off('first') < 0.02 && off('second') < 0.02,
     `${pairs.length} keys of both forms: positions differ by ${(off('positions') / step).toFixed(2)} steps, ` +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/lobe_packing.h"
@@ -12,7 +13,9 @@ namespace cloudbake {
 namespace {
 
 constexpr double kSteps = 65535;
-constexpr int kBlocks = 4;
+// Of a sequence that is made for pictures of a size: positions are off by at most 1/64 of a pixel along each axis, and T by 0.001 where σ
+// times the largest d is at most 20.
+constexpr int kStepsPerPixel = 32, kRootBits = 11;
 
 using Texel = std::array<int, 3>;  // bytes
 
@@ -22,7 +25,11 @@ size_t texelAt(const KeyTexturePlace& place, int block, int key, size_t vertex) 
   return row * kSequenceColumns + vertex % kSequenceColumns;
 }
 
-uint16_t steps(double share) { return uint16_t(std::lround(kSteps * std::clamp(share, 0.0, 1.0))); }
+// The nearest number whose bits after the first so many are 0; the largest one is all ones.
+uint16_t steps(double share, int bits) {
+  const int step = 1 << (16 - bits);
+  return uint16_t(std::min(step * int(std::lround(kSteps / step * std::clamp(share, 0.0, 1.0))), 65535));
+}
 
 // A direction as two bytes: the nearest of the four points around its place in the octahedron's map.
 std::array<uint8_t, 2> directionBytes(Vec3 direction) {
@@ -63,6 +70,8 @@ int rowsOfTexture(const std::vector<KeyTexturePlace>& places) { return places.ba
 
 KeyTextureScale scaleOfTexture(const CloudSequence& sequence) {
   KeyTextureScale scale{boxOf(sequence.segments)};
+  if (sequence.pixels > 0)
+    scale.position_bits = std::min(int(std::bit_width(unsigned(kStepsPerPixel * sequence.pixels - 1))), 16), scale.root_bits = kRootBits;
   for (const SequenceSegment& segment : sequence.segments)
     for (const SequenceKey& key : segment.keys)
       for (const Lobe& lobe : key.lobes) scale.densest = std::max(scale.densest, lobe.thickness);
@@ -71,14 +80,16 @@ KeyTextureScale scaleOfTexture(const CloudSequence& sequence) {
 
 std::vector<KeyNumbers> numbersOfKey(const SequenceKey& key, const KeyTextureScale& scale) {
   const Vec3 low = scale.box.low, size = scale.box.size();
-  const auto share = [](float value, float from, float extent) { return extent > 0 ? (double(value) - from) / extent : 0; };
+  const auto place = [&](float value, float from, float extent) {
+    return steps(extent > 0 ? (double(value) - from) / extent : 0, scale.position_bits);
+  };
   std::vector<KeyNumbers> numbers;
   numbers.reserve(key.positions.size());
   for (size_t v = 0; v < key.positions.size(); ++v) {
     const Vec3 p = key.positions[v];
     const Lobe& lobe = key.lobes[v];
-    numbers.push_back({{steps(share(p.x, low.x, size.x)), steps(share(p.y, low.y, size.y)), steps(share(p.z, low.z, size.z))},
-                       scale.densest > 0 ? steps(std::sqrt(double(lobe.thickness) / scale.densest)) : uint16_t(0),
+    numbers.push_back({{place(p.x, low.x, size.x), place(p.y, low.y, size.y), place(p.z, low.z, size.z)},
+                       scale.densest > 0 ? steps(std::sqrt(double(lobe.thickness) / scale.densest), scale.root_bits) : uint16_t(0),
                        directionBytes(lobe.direction),
                        directionBytes(key.normals[v])});
   }

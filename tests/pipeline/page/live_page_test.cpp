@@ -141,7 +141,8 @@ Scenery growingBalls() {
   const BakedMesh small = bakedBall(1, {}, 2), large = bakedBall(2, {}, 2), fine = bakedBall(2, {}, 3);
   BakedMesh& first = scenery.meshes["grows"] = small;
   SceneSequence& own = scenery.sequences[&first];
-  own.sequence = {small.info, 12, true, 20, {}, {}};
+  own.sequence.info = small.info;
+  own.sequence.frames_per_second = 12, own.sequence.loops = true, own.sequence.period = 20;
   own.sequence.segments = {{small.surface.triangles, {keyOf(0, small), keyOf(10, large)}}, {fine.surface.triangles, {keyOf(8, fine)}}};
   own.whole = drawnBox(fine.surface);
   for (const float x : {-5.0F, 5.0F}) scenery.instances.push_back({&first, placement({x, 0, 0}, {}, {x / 5, 1, 1})});

@@ -3,16 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text/json.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/document.h"
+#include "io/gltf/sequence/key_texture.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
@@ -83,6 +86,38 @@ TEST_P(SequenceFile, ComesBackAsItWas) {
         EXPECT_LE(std::abs(a.lobes[v].thickness - b.lobes[v].thickness), depth);
       }
     }
+  }
+}
+
+// What the picture keeps of a sequence for pictures of a size, and that its bytes shrink.
+TEST(KeyTexture, RoundsToSharesOfPixels) {
+  CloudSequence sequence = someSequence();
+  const size_t whole = encodeSequence(sequence, SequenceForm::kTexture).size();
+  size_t before = 0;
+  for (const auto& [pixels, step] : {std::pair(128, 16), {512, 4}, {2048, 1}}) {
+    sequence.pixels = pixels;
+    const std::string glb = encodeSequence(sequence, SequenceForm::kTexture);
+    EXPECT_GT(glb.size(), before);
+    EXPECT_LE(glb.size(), whole);
+    before = glb.size();
+    const CloudSequence read = decodeSequence("a.glb", glb);
+    const KeyTextureScale scale = scaleOfTexture(sequence);
+    const Vec3 size = scale.box.size();
+    float farthest = 0, deepest = 0;
+    for (size_t s = 0; s < read.segments.size(); ++s)
+      for (size_t k = 0; k < read.segments[s].keys.size(); ++k) {
+        const SequenceKey &a = sequence.segments[s].keys[k], &b = read.segments[s].keys[k];
+        for (size_t v = 0; v < a.positions.size(); ++v) {
+          const Vec3 off = a.positions[v] - b.positions[v];
+          farthest = std::max({farthest, std::abs(off.x) / size.x, std::abs(off.y) / size.y, std::abs(off.z) / size.z});
+          const auto root = [&](const Lobe& lobe) { return std::sqrt(lobe.thickness / scale.densest); };
+          deepest = std::max(deepest, std::abs(root(a.lobes[v]) - root(b.lobes[v])));
+        }
+        for (const KeyNumbers& one : numbersOfKey(a, scale))
+          for (const int place : one.position) EXPECT_TRUE(place % step == 0 || place == 65535);
+      }
+    EXPECT_LE(farthest, 0.51F / 32 / float(pixels));
+    EXPECT_LE(deepest, 0.51F / 2048);
   }
 }
 
