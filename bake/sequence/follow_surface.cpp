@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/shells.h"
@@ -99,33 +100,44 @@ std::vector<Vec3> FollowingMesh::averaged(const std::vector<Vec3>& values) const
   return means;
 }
 
-void FollowingMesh::smooth(std::vector<Vec3>& values, int passes) const {
+// Goes half of the way to the mean of the neighbours, so many times.
+void FollowingMesh::smooth(std::vector<Sums>& values, int passes) const {
+  std::vector<Sums> next(values.size());
   for (int i = 0; i < passes; ++i) {
-    const std::vector<Vec3> means = averaged(values);
-    for (size_t v = 0; v < values.size(); ++v) values[v] = (values[v] + means[v]) * 0.5F;
+    parallelBlocks(values.size(), 500, [&](size_t begin, size_t end) {
+      for (size_t v = begin; v < end; ++v) {
+        const uint32_t count = first_[v + 1] - first_[v];
+        next[v] = values[v];
+        if (count == 0) continue;
+        Sums sum{};
+        for (uint32_t k = first_[v]; k < first_[v + 1]; ++k)
+          for (size_t n = 0; n < sum.size(); ++n) sum[n] += values[neighbours_[k]][n];
+        for (size_t n = 0; n < sum.size(); ++n) next[v][n] = (values[v][n] + sum[n] / float(count)) * 0.5F;
+      }
+    });
+    std::swap(values, next);
   }
 }
 
 // How each vertex moves with its neighbourhood to these places of the surface.
 std::vector<Vec3> FollowingMesh::motionTo(const std::vector<Vec3>& places, int smoothings) const {
   const size_t count = places.size();
-  std::vector<Vec3> diagonal(count), beside(count), right(count);  // xx yy zz, yz xz xy of Σ n nᵀ, and Σ e n
+  std::vector<Sums> sums(count);
   for (size_t v = 0; v < count; ++v) {
-    const Vec3 n = mesh_.normals[v];
-    diagonal[v] = n * n, beside[v] = {n.y * n.z, n.x * n.z, n.x * n.y};
-    right[v] = n * dot(places[v] - mesh_.positions[v], n);
+    const Vec3 n = mesh_.normals[v], right = n * dot(places[v] - mesh_.positions[v], n);
+    sums[v] = {n.x * n.x, n.y * n.y, n.z * n.z, n.y * n.z, n.x * n.z, n.x * n.y, right.x, right.y, right.z};
   }
-  for (std::vector<Vec3>* values : {&diagonal, &beside, &right}) smooth(*values, smoothings);
+  smooth(sums, smoothings);
   std::vector<Vec3> motion(count);
   for (size_t v = 0; v < count; ++v) {
-    const Vec3 o = beside[v];
-    const float stiffness = kStiffness * (diagonal[v].x + diagonal[v].y + diagonal[v].z);
-    const Vec3 d = diagonal[v] + Vec3{stiffness, stiffness, stiffness};
+    const auto& [xx, yy, zz, yz, xz, xy, right_x, right_y, right_z] = sums[v];
+    const float stiffness = kStiffness * (xx + yy + zz);
+    const Vec3 o{yz, xz, xy}, d = Vec3{xx, yy, zz} + Vec3{stiffness, stiffness, stiffness}, right{right_x, right_y, right_z};
     // By Cramer's rule.
     const Vec3 first{d.y * d.z - o.x * o.x, o.x * o.y - o.z * d.z, o.z * o.x - d.y * o.y},
         second{first.y, d.x * d.z - o.y * o.y, o.z * o.y - d.x * o.x}, third{first.z, second.z, d.x * d.y - o.z * o.z};
     const float determinant = d.x * first.x + o.z * first.y + o.y * first.z;
-    if (determinant > 0) motion[v] = Vec3{dot(first, right[v]), dot(second, right[v]), dot(third, right[v])} / determinant;
+    if (determinant > 0) motion[v] = Vec3{dot(first, right), dot(second, right), dot(third, right)} / determinant;
   }
   return motion;
 }

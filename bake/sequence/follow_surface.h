@@ -1,6 +1,7 @@
 // Moves a mesh along with a surface that changes from frame to frame, so that all frames have the same triangles.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/figures.h"
@@ -39,8 +40,10 @@ class FollowingMesh {
   const SurfaceMesh& mesh() const { return mesh_; }
 
  private:
+  using Sums = std::array<float, 9>;  ///< xx yy zz yz xz xy of Σ n nᵀ, and Σ e n
+
   std::vector<Vec3> averaged(const std::vector<Vec3>& values) const;
-  void smooth(std::vector<Vec3>& values, int passes) const;
+  void smooth(std::vector<Sums>& values, int passes) const;
   std::vector<Vec3> motionTo(const std::vector<Vec3>& places, int smoothings) const;
   void spread(float share);
 

@@ -30,7 +30,13 @@ class NearestTriangle : public NearestSurface {
       : frame_(boundingBox(surface)),
         positions_(inFrame(surface.positions, frame_)),
         triangles_(surface.triangles),
-        scene_(positions_, triangles_, RaysToCome::kFew) {}
+        scene_(positions_, triangles_, RaysToCome::kFew) {
+    for (const auto& [a, b, c] : triangles_) {
+      const Vec3 middle = (positions_[a] + positions_[b] + positions_[c]) / 3;
+      const float radius = std::max({length(positions_[a] - middle), length(positions_[b] - middle), length(positions_[c] - middle)});
+      balls_.push_back({middle, radius + kRounding});
+    }
+  }
 
   SurfaceError errorOf(const SurfaceMesh& now) const override {
     std::vector<Vec3> samples = inFrame(now.positions, frame_);
@@ -75,6 +81,9 @@ class NearestTriangle : public NearestSurface {
     double least = INFINITY;  // squared
     Found found;
     scene_.forTrianglesNear(at, [&](uint32_t triangle, float radius) {
+      const Ball& ball = balls_[triangle];
+      const float reach = ball.radius + radius;
+      if (dot(ball.middle - at, ball.middle - at) > reach * reach * (1 + kRounding)) return radius;
       const auto& [a, b, c] = triangles_[triangle];
       if (facing && !(dot(cross(positions_[b] - positions_[a], positions_[c] - positions_[a]), *facing) > 0)) return radius;
       openvdb::Vec3d weights;
@@ -90,9 +99,17 @@ class NearestTriangle : public NearestSurface {
     return found;
   }
 
+  // Around a triangle, so that most of those that are too far away need no exact distance.
+  struct Ball {
+    Vec3 middle;
+    float radius = 0;
+  };
+  static constexpr float kRounding = 1e-5F;
+
   Box frame_;
   std::vector<Vec3> positions_;
   const std::vector<Triangle>& triangles_;
+  std::vector<Ball> balls_;
   RayScene scene_;
 };
 
