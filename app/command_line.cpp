@@ -35,7 +35,7 @@ Settings settingsOf(const CommandLine& line, std::span<const Given> given, const
 }
 
 RunFile outputOf(const CommandLine& line) {
-  const RunFile file{line.output, "-o"};
+  RunFile file{line.output, "-o"};
   if (line.command != kSequence) return file;
   Settings scratch;
   for (const Given& given : line.given)

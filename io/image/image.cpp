@@ -2,10 +2,10 @@
 // give equal bytes.
 #include "io/image/image.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -22,7 +22,7 @@ unsigned char* zlibCompressed(unsigned char* data, int count, int* size, int) {
   const std::string zlib = cloudbake::deflated({reinterpret_cast<const char*>(data), size_t(count)}, cloudbake::kUsual);
   auto* result = static_cast<unsigned char*>(std::malloc(zlib.size()));
   if (!result) return nullptr;
-  std::memcpy(result, zlib.data(), zlib.size());
+  std::copy(zlib.begin(), zlib.end(), result);
   *size = int(zlib.size());
   return result;
 }

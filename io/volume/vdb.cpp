@@ -380,7 +380,7 @@ vdb::FloatGrid::Ptr turned(const vdb::FloatGrid& grid, UpAxis up) {
     const auto [i, j, k] = turned(std::array{ijk.x(), ijk.y(), ijk.z()}, up);
     return vdb::Coord(i, j, k);
   };
-  const vdb::FloatGrid::Ptr result = grid.copyWithNewTree();
+  vdb::FloatGrid::Ptr result = grid.copyWithNewTree();
   vdb::FloatGrid::Accessor values = result->getAccessor();
   for (auto value = grid.cbeginValueAll(); value; ++value) {
     if (!value.isValueOn() && *value == grid.background()) continue;

@@ -12,8 +12,8 @@ namespace cloudbake {
 
 /// What the texels' numbers stand for.
 struct KeyTextureScale {
-  Box box;            ///< of all positions: 0 … 65535 of each axis is its low … its high corner
-  float densest = 0;  ///< the largest d: 0 … 65535 is the root of d / densest
+  Box box;                                 ///< of all positions: 0 … 65535 of each axis is its low … its high corner
+  float densest = 0;                       ///< the largest d: 0 … 65535 is the root of d / densest
   int position_bits = 16, root_bits = 16;  ///< that are kept; the others of the 16 are 0, for which PNG takes next to nothing
 };
 
