@@ -13,6 +13,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "pipeline/check/against.h"
+#include "pipeline/fields/stopwatch.h"
 
 namespace cloudbake {
 

@@ -9,6 +9,7 @@
 
 #include "bake/impostor/bake_impostor.h"
 #include "bake/lobe/sweep.h"
+#include "bake/mesh/mesh_topology.h"
 #include "core/parallel.h"
 #include "core/portable_math.h"
 #include "pipeline/fields/fields.h"
