@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -98,6 +99,12 @@ class Chooser {
 
 std::vector<size_t> chooseKeys(const CloudSequence& sequence, const SequenceSegment& all, int pixels, double most_change,
                                std::vector<BlendFigures>& figures) {
+  if (!(most_change > 0)) {
+    figures.assign(all.keys.size(), {});
+    std::vector<size_t> keys(all.keys.size());
+    std::iota(keys.begin(), keys.end(), size_t(0));
+    return keys;
+  }
   return Chooser(sequence, all, pixels, most_change).choose(figures);
 }
 

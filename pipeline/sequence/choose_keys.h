@@ -14,7 +14,8 @@ struct BlendFigures {
 };
 
 /// The keys of a segment, as indices of its frames: the first and the last one, and as few others as are needed so that no picture of a
-/// frame changes by more than `most_change`, where the longest side covers `pixels` pixels. `figures` gets those of all frames.
+/// frame changes by more than `most_change`, where the longest side covers `pixels` pixels; all of them if that is 0. `figures` gets those
+/// of all frames.
 std::vector<size_t> chooseKeys(const CloudSequence& sequence, const SequenceSegment& all, int pixels, double most_change,
                                std::vector<BlendFigures>& figures);
 

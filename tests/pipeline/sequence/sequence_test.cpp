@@ -203,6 +203,8 @@ TEST_F(SequenceTest, KeysAreWhereBlendingErrs) {
   EXPECT_EQ(chooseKeys(sequence, all, 64, 255, figures), (std::vector<size_t>{0, 8}));
   EXPECT_GT(figures[4].change, 1) << "the change is told, also where it is allowed";
   EXPECT_GT(figures[4].transmittance_rms, 0.001);
+  EXPECT_EQ(chooseKeys(sequence, all, 64, 0, figures).size(), 9U) << "also those between which nothing changes";
+  EXPECT_EQ(figures[6].change, 0);
 }
 
 // A ball is born beside another.
