@@ -1,29 +1,26 @@
 // The sequence of a GLB that is dropped on the page (docs/sequences.md), as a scene shows it.
 
-import { boundsOf, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf } from '../engines/npm/sequence.js';
+import {
+  CURE, boundsOf, keysOfPicture, keysOfTargets, pictureView, pixelsOfPng, primitiveOf, sequenceOf,
+} from '../engines/npm/sequence.js';
 import { readySequence } from './sequences.js';
-
-const CURE = 'take the file that `cloudbake sequence` wrote.';
 
 /** The bytes of the picture that has the keys. @param {import('./glb.js').GlbReader} reader */
 function keyPicture({ json, buffer, binary }) {
-  const image = json.images?.find(({ name }) => name === 'keys');
-  const { byteOffset = 0, byteLength } = json.bufferViews?.[image?.bufferView] ?? {};
-  if (!(byteLength > 0)) throw new Error(`The sequence has lost the picture of its keys: ${CURE}`);
+  const { byteOffset = 0, byteLength } = json.bufferViews?.[pictureView(json)] ?? {};
+  if (!(byteLength > 0)) throw new Error(`the sequence has lost the picture of its keys: ${CURE}`);
   return new Uint8Array(buffer.slice(binary + byteOffset, binary + byteOffset + byteLength));
 }
 
-function readSegment(reader, { mesh, frames, firstRow }, sequence, picture) {
-  const primitive = reader.json.meshes?.[mesh]?.primitives[0], targets = primitive?.targets ?? [];
-  if (!primitive) throw new Error(`A segment of the sequence has no mesh: ${CURE}`);
-  if (!picture && targets.length !== frames.length - 1) throw new Error(`A key of the sequence has no morph target: ${CURE}`);
-  const keyOf = attributes => {
-    const numbers = set => reader.read(attributes[set], set);
+function readSegment(reader, segment, sequence, picture) {
+  const { attributes, indices, targets } = primitiveOf(reader.json, sequence.form, segment);
+  const keyOf = sets => {
+    const numbers = set => reader.read(sets[set], set);
     return { positions: numbers('POSITION'), normals: numbers('NORMAL'), first: numbers('TEXCOORD_0'), second: numbers('TEXCOORD_1') };
   };
-  const base = keyOf(primitive.attributes), triangles = reader.read(primitive.indices, 'triangles'), vertices = base.positions.length / 3;
+  const base = keyOf(attributes), triangles = reader.read(indices, 'triangles'), vertices = base.positions.length / 3;
   if (!triangles.every(v => v < vertices)) throw new Error('The GLB is damaged: a triangle uses a vertex that does not exist.');
-  const keys = picture ? keysOfPicture(picture, sequence, { mesh, frames, firstRow }, vertices) : keysOfTargets(base, targets.map(keyOf));
+  const keys = picture ? keysOfPicture(picture, sequence, segment, vertices) : keysOfTargets(base, targets.map(keyOf));
   return { triangles, keys };
 }
 

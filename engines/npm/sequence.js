@@ -34,6 +34,22 @@ export function sequenceOf(json) {
     segments: own.segments.map(({ mesh, frames, first_row }) => ({ mesh, frames, firstRow: first_row })) };
 }
 
+/** The number of the buffer view with the picture of the keys. */
+export function pictureView(json) {
+  const { bufferView } = json.images?.find(({ name }) => name === 'keys') ?? {};
+  if (bufferView === undefined) throw new Error(`the sequence has lost the picture of its keys: ${CURE}`);
+  return bufferView;
+}
+
+/** The primitive of a segment: its first key and, unless there is a picture, the others as morph targets. */
+export function primitiveOf(json, form, { mesh, frames }) {
+  const primitive = json.meshes?.[mesh]?.primitives[0];
+  if (!primitive) throw new Error(`a segment of the sequence has no mesh: ${CURE}`);
+  const { attributes, indices, targets = [] } = primitive;
+  if (form !== 'picture' && targets.length !== frames.length - 1) throw new Error(`a key of the sequence has no morph target: ${CURE}`);
+  return { attributes, indices, targets };
+}
+
 /**
  * The segments that are seen at a time, with the frame and the weight of each: one, or two while one fades into the other, the earlier one
  * first. A sequence that does not loop stays at its last frame.

@@ -1,5 +1,5 @@
 // The GLB of a sequence, for engines whose loaders do not hand over its keys.
-import { CURE, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf } from './sequence.js';
+import { CURE, keysOfPicture, keysOfTargets, pictureView, pixelsOfPng, primitiveOf, sequenceOf } from './sequence.js';
 
 const ARRAYS = { 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array }, WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3 };
 const SETS = { positions: 'POSITION', normals: 'NORMAL', first: 'TEXCOORD_0', second: 'TEXCOORD_1' };
@@ -32,26 +32,16 @@ function keyOf(chunks, attributes) {
   })));
 }
 
-async function pictureOf(chunks) {
-  const image = chunks.json.images?.find(({ name }) => name === 'keys');
-  if (image?.bufferView === undefined) throw new Error(`the sequence has lost the picture of its keys: ${CURE}`);
-  return pixelsOfPng(bytesOf(chunks, image.bufferView));
-}
-
 /** What the file says, and its segments with their keys and triangles. @param {ArrayBuffer} file */
 export async function readSequence(file) {
   const chunks = chunksOf(file), { json } = chunks, sequence = sequenceOf(json);
   if (!sequence) throw new Error('the file is no sequence: make one with `cloudbake sequence`');
-  const picture = sequence.form === 'picture' ? await pictureOf(chunks) : null;
+  const picture = sequence.form === 'picture' ? await pixelsOfPng(bytesOf(chunks, pictureView(json))) : null;
   const segments = sequence.segments.map(segment => {
-    const primitive = json.meshes?.[segment.mesh]?.primitives[0];
-    if (!primitive) throw new Error(`a segment of the sequence has no mesh: ${CURE}`);
-    const base = keyOf(chunks, primitive.attributes), targets = primitive.targets ?? [];
-    if (!picture && targets.length !== segment.frames.length - 1)
-      throw new Error(`a key of the sequence has no morph target: ${CURE}`);
+    const { attributes, indices, targets } = primitiveOf(json, sequence.form, segment), base = keyOf(chunks, attributes);
     const keys = picture ? keysOfPicture(picture, sequence, segment, base.positions.length / 3)
       : keysOfTargets(base, targets.map(target => keyOf(chunks, target)));
-    return { ...segment, keys, index: numbersOf(chunks, primitive.indices) };
+    return { ...segment, keys, index: numbersOf(chunks, indices) };
   });
   return { json, sequence: { ...sequence, segments } };
 }

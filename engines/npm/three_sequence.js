@@ -1,7 +1,9 @@
 // Clouds that change (`cloudbake sequence`), in three.js.
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh, Sphere, Vector3 } from 'three';
 import { settingsOf } from './asset.js';
-import { CURE, emptyKey, keysOfPicture, keysOfTargets, pixelsOfPng, sequenceOf, shownAt, shownSegments, writeKeyAt } from './sequence.js';
+import {
+  CURE, emptyKey, keysOfPicture, keysOfTargets, pictureView, pixelsOfPng, primitiveOf, sequenceOf, shownAt, shownSegments, writeKeyAt,
+} from './sequence.js';
 import { setFading } from './sequence_fade.js';
 import { CloudMaterial } from './three.js';
 
@@ -26,12 +28,6 @@ async function keyOf(parser, attributes) {
   return key;
 }
 
-async function pictureOf(parser) {
-  const image = parser.json.images?.find(({ name }) => name === 'keys');
-  if (image?.bufferView === undefined) throw new Error(`the sequence has lost the picture of its keys: ${CURE}`);
-  return pixelsOfPng(await parser.getDependency('bufferView', image.bufferView));
-}
-
 // The bounds of a segment at all times: what lies between two keys is within them.
 function boundsOf(keys) {
   const box = new Box3();
@@ -40,14 +36,10 @@ function boundsOf(keys) {
 }
 
 async function segmentOf(parser, sequence, segment, picture) {
-  const primitive = parser.json.meshes?.[segment.mesh]?.primitives[0];
-  if (!primitive) throw new Error(`a segment of the sequence has no mesh: ${CURE}`);
-  const base = await keyOf(parser, primitive.attributes), targets = primitive.targets ?? [];
-  if (!picture && targets.length !== segment.frames.length - 1)
-    throw new Error(`a key of the sequence has no morph target: ${CURE}`);
+  const { attributes, indices, targets } = primitiveOf(parser.json, sequence.form, segment), base = await keyOf(parser, attributes);
   const keys = picture ? keysOfPicture(picture, sequence, segment, base.positions.length / 3)
     : keysOfTargets(base, await Promise.all(targets.map(target => keyOf(parser, target))));
-  return { ...segment, keys, ...boundsOf(keys), index: await parser.getDependency('accessor', primitive.indices) };
+  return { ...segment, keys, ...boundsOf(keys), index: await parser.getDependency('accessor', indices) };
 }
 
 export class CloudSequence extends Group {
@@ -55,7 +47,8 @@ export class CloudSequence extends Group {
   static async of(/** @type {import('three/addons/loaders/GLTFLoader.js').GLTF} */ { parser, userData }) {
     const sequence = sequenceOf(parser.json);
     if (!sequence) throw new Error('the file is no sequence: make one with `cloudbake sequence`');
-    const picture = sequence.form === 'picture' ? await pictureOf(parser) : null;
+    const picture = sequence.form === 'picture'
+      ? await pixelsOfPng(await parser.getDependency('bufferView', pictureView(parser.json))) : null;
     const segments = await Promise.all(sequence.segments.map(segment => segmentOf(parser, sequence, segment, picture)));
     const settings = /** @type {any} */ (settingsOf(parser.json, { sequences: true }));
     return new CloudSequence({ ...sequence, segments }, userData.cloudMaterial ?? new CloudMaterial(settings));
