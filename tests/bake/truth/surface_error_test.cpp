@@ -3,7 +3,13 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
 #include "bake/mesh/surface.h"
+#include "core/surface_points.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -13,6 +19,63 @@ namespace {
 SurfaceMesh scaled(SurfaceMesh mesh, float factor, Vec3 offset) {
   for (Vec3& p : mesh.positions) p = p * factor + offset;
   return mesh;
+}
+
+// The square of the distance to a segment, and to a triangle: of the nearest place of its plane, if that is inside, or of an edge.
+double squaredTo(const std::array<double, 3>& p, const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  double along = 0, length = 0, squared = 0;
+  for (size_t i = 0; i < 3; ++i) along += (p[i] - a[i]) * (b[i] - a[i]), length += (b[i] - a[i]) * (b[i] - a[i]);
+  const double share = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0;
+  for (size_t i = 0; i < 3; ++i) squared += std::pow(a[i] + share * (b[i] - a[i]) - p[i], 2);
+  return squared;
+}
+double squaredTo(Vec3 point, const SurfaceMesh& mesh, const Triangle& t) {
+  const auto wide = [](Vec3 v) { return std::array<double, 3>{v.x, v.y, v.z}; };
+  const auto p = wide(point), a = wide(mesh.positions[t[0]]), b = wide(mesh.positions[t[1]]), c = wide(mesh.positions[t[2]]);
+  double least = std::min({squaredTo(p, a, b), squaredTo(p, b, c), squaredTo(p, c, a)});
+  std::array<double, 3> n{};
+  double square = 0, height = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    n[i] = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
+    square += n[i] * n[i], height += n[i] * (p[i] - a[i]);
+  }
+  const auto isInside = [&](const auto& from, const auto& to) {
+    double side = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      side += n[i] * ((to[j] - from[j]) * (p[k] - from[k]) - (to[k] - from[k]) * (p[j] - from[j]));
+    }
+    return side >= 0;
+  };
+  if (square > 0 && isInside(a, b) && isInside(b, c) && isInside(c, a)) least = std::min(least, height * height / square);
+  return least;
+}
+
+// Beside all triangles one by one: long ones in any direction and short ones, points among them and far away.
+TEST(SurfaceError, NearestOfAllTriangles) {
+  SurfaceMesh mesh = ballMesh(0.7F, 3, {0.5F, 1.2F, 0});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> share(-1, 1);
+  const auto somewhere = [&] { return Vec3{share(random), share(random), share(random)}; };
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 from = somewhere() * 3, to = from + somewhere() * 4;
+    const auto first = uint32_t(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {from, to, (from + to) / 2 + somewhere() * 0.2F});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto nearest = nearestSurface(mesh);
+  for (const float size : {0.5F, 2.0F, 20.0F, 2000.0F}) {
+    std::vector<Vec3> points(300);
+    for (Vec3& p : points) p = somewhere() * size;
+    const std::vector<SurfacePoint> found = nearest->nearestTo(points);
+    for (size_t i = 0; i < points.size(); ++i) {
+      double least = INFINITY;
+      for (const Triangle& t : mesh.triangles) least = std::min(least, squaredTo(points[i], mesh, t));
+      const double own = length(valueAt(found[i], mesh.positions) - points[i]);
+      EXPECT_NEAR(own, std::sqrt(least), 2e-6 * std::max(1.0F, size)) << size;
+    }
+  }
 }
 
 }  // namespace
