@@ -91,6 +91,18 @@ TEST_P(SequenceCheck, JudgesWhatIsBetweenKeys) {
   EXPECT_NE(report.verdict->what.find("frame 6, halfway between two keys"), std::string::npos) << report.verdict->what;
 }
 
+// The normals of a cap, which has an eighth of the triangles, are turned inwards.
+TEST_P(SequenceCheck, SeesFolds) {
+  const CheckReport report = changed([](CloudSequence& sequence) {
+    SequenceKey& key = sequence.segments[0].keys[0];
+    for (size_t v = 0; v < key.normals.size(); ++v)
+      if (key.normals[v].y > 0.75F) key.normals[v] = -key.normals[v];
+  });
+  ASSERT_TRUE(report.verdict);
+  EXPECT_EQ(report.verdict->cause, "folded");
+  EXPECT_NE(report.verdict->what.find("the key at frame 0: "), std::string::npos) << report.verdict->what;
+}
+
 TEST_P(SequenceCheck, ASmallChangeBreaksTheSeal) {
   const CheckReport report = changed([](CloudSequence& sequence) {
     for (Lobe& lobe : sequence.segments[0].keys[0].lobes) lobe.thickness *= 1.02F;

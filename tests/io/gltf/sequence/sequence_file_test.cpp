@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -119,6 +120,53 @@ TEST(KeyTexture, RoundsToSharesOfPixels) {
     EXPECT_LE(farthest, 0.51F / 32 / float(pixels));
     EXPECT_LE(deepest, 0.51F / 2048);
   }
+}
+
+// What plays the morph targets in any viewer: the weight of each key's own target, and which segment is shown.
+TEST(SequenceFileMorph, AnimatesWeightsAndSegments) {
+  const std::string glb = encodeSequence(someSequence(), SequenceForm::kMorph);
+  const GlbChunks chunks = splitGlb("a", glb);
+  const Json json = *parseJson(chunks.json);
+  const auto numbers = [&](const Json& accessor) {
+    const Json &own = json["accessors"][accessor.get<size_t>()], &view = json["bufferViews"][own["bufferView"].get<size_t>()];
+    std::vector<float> values(view["byteLength"].get<size_t>() / sizeof(float));
+    std::memcpy(values.data(), chunks.binary.data() + view["byteOffset"].get<size_t>(), values.size() * sizeof(float));
+    return values;
+  };
+  struct Channel {
+    const char *path, *interpolation;
+    int node;
+    std::vector<float> seconds, values;
+  };
+  const std::vector<Channel> expected{{"weights", "LINEAR", 0, {0, 0.16F, 0.4F}, {0, 0, 1, 0, 0, 1}},
+                                      {"scale", "STEP", 0, {0, 0.36F}, {1, 1, 1, 0, 0, 0}},
+                                      {"weights", "LINEAR", 1, {0.32F, 0.8F}, {0, 1}},
+                                      {"scale", "STEP", 1, {0, 0.36F, 0.76F}, {0, 0, 0, 1, 1, 1, 0, 0, 0}},
+                                      {"scale", "STEP", 2, {0, 0.76F}, {0, 0, 0, 1, 1, 1}}};
+  const Json& animation = json["animations"][0];
+  ASSERT_EQ(animation["channels"].size(), expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) {
+    const Json &channel = animation["channels"][i], &sampler = animation["samplers"][channel["sampler"].get<size_t>()];
+    EXPECT_EQ(channel["target"]["path"], expected[i].path);
+    EXPECT_EQ(channel["target"]["node"], expected[i].node);
+    EXPECT_EQ(sampler["interpolation"], expected[i].interpolation);
+    EXPECT_EQ(numbers(sampler["input"]), expected[i].seconds) << i;
+    EXPECT_EQ(numbers(sampler["output"]), expected[i].values) << i;
+  }
+}
+
+// More vertices than 16 bits can number.
+TEST_P(SequenceFile, HasWideIndices) {
+  CloudSequence sequence = someSequence();
+  SequenceKey key;
+  for (uint32_t v = 0; v < 66000; ++v) {
+    const uint32_t row = v / 300;
+    key.positions.push_back({float(v % 300), float(row), float(v % 7)});
+    key.normals.push_back({0, 1, 0});
+    key.lobes.push_back({{0, 1, 0}, 1});
+  }
+  sequence.segments = {{{{0, 1, 65999}, {1, 65537, 300}}, {key}}};
+  EXPECT_EQ(decodeSequence("a.glb", encodeSequence(sequence, GetParam())).segments[0].triangles, sequence.segments[0].triangles);
 }
 
 // For gltf_validator (tests/CMakeLists.txt).
