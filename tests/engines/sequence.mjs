@@ -108,7 +108,8 @@ const largestOf = (a, b) => a.reduce((most, x, i) => Math.max(most, Math.abs(x -
 // The keys of the two forms, and of the assets of `--as keys`, are the same within the steps of the picture; and times lead to segments.
 function sameKeys(kit, of_picture, of_morph) {
   const pairs = of_picture.segments.flatMap((segment, s) => segment.keys.map((key, k) => [key, of_morph.segments[s].keys[k]]));
-  const [low, high] = of_picture.box, step = Math.max(...low.map((x, i) => high[i] - x)) / 4096;
+  // The picture keeps 12 bits of a position for the default --pixels.
+  const [low, high] = of_picture.box, step = Math.max(...low.map((x, i) => high[i] - x)) / 2 ** 12;
   const off = name => Math.max(...pairs.map(([a, b]) => largestOf(a[name], b[name])));
   demand(off('positions') < 0.6 * step && off('normals') < 0.02 && off('first') < 0.02 && off('second') < 0.02,
     `${pairs.length} keys of both forms: positions differ by ${(off('positions') / step).toFixed(2)} steps, ` +
@@ -276,8 +277,8 @@ function crc32(bytes) {
 }
 
 async function refused(page) {
-  const told = async change => {
-    writeFileSync(join(folder, 'changed.glb'), changedGlb(read('picture.glb'), change));
+  const told = async (change, name) => {
+    writeFileSync(join(folder, 'changed.glb'), changedGlb(read(name), change));
     return page.evaluate(() => window.kit.refusal('changed.glb'));
   };
   const own = json => json.asset.extras.cloudbake, changes = {
@@ -286,9 +287,11 @@ async function refused(page) {
     'incomplete or damaged': json => { own(json).sequence.segments[1].frames.reverse(); },
     'has another size': json => { own(json).sequence.segments[2].first_row += 1000; },
     'is no sequence': json => { own(json).layout = 'lobe-uv'; },
+    'a segment of the sequence has no mesh': json => { own(json).sequence.segments[1].mesh = 99; },
+    'a key of the sequence has no morph target': json => { json.meshes[0].primitives[0].targets.pop(); },
   };
   for (const [words, change] of Object.entries(changes)) {
-    const message = await told(change);
+    const message = await told(change, words.includes('morph') ? 'morph.glb' : 'picture.glb');
     demand(new RegExp(words).test(message), `a changed file is refused: ${message}`);
   }
 }
