@@ -86,15 +86,19 @@ void FollowingMesh::place(std::vector<Vec3> positions) {
   mesh_.normals = vertexNormals(mesh_.positions, mesh_.triangles);
 }
 
+std::span<const uint32_t> FollowingMesh::neighboursOf(size_t v) const {
+  return std::span(neighbours_).subspan(first_[v], first_[v + 1] - first_[v]);
+}
+
 // The mean of the neighbours' values, per vertex.
 std::vector<Vec3> FollowingMesh::averaged(const std::vector<Vec3>& values) const {
   std::vector<Vec3> means(values.size());
   parallelBlocks(values.size(), 1000, [&](size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) {
+      const std::span<const uint32_t> neighbours = neighboursOf(v);
       Vec3 sum;
-      for (uint32_t i = first_[v]; i < first_[v + 1]; ++i) sum += values[neighbours_[i]];
-      const uint32_t count = first_[v + 1] - first_[v];
-      means[v] = count > 0 ? sum / float(count) : values[v];
+      for (const uint32_t other : neighbours) sum += values[other];
+      means[v] = neighbours.empty() ? values[v] : sum / float(neighbours.size());
     }
   });
   return means;
@@ -106,13 +110,13 @@ void FollowingMesh::smooth(std::vector<Sums>& values, int passes) const {
   for (int i = 0; i < passes; ++i) {
     parallelBlocks(values.size(), 500, [&](size_t begin, size_t end) {
       for (size_t v = begin; v < end; ++v) {
-        const uint32_t count = first_[v + 1] - first_[v];
+        const std::span<const uint32_t> neighbours = neighboursOf(v);
         next[v] = values[v];
-        if (count == 0) continue;
+        if (neighbours.empty()) continue;
         Sums sum{};
-        for (uint32_t k = first_[v]; k < first_[v + 1]; ++k)
-          for (size_t n = 0; n < sum.size(); ++n) sum[n] += values[neighbours_[k]][n];
-        for (size_t n = 0; n < sum.size(); ++n) next[v][n] = (values[v][n] + sum[n] / float(count)) * 0.5F;
+        for (const uint32_t other : neighbours)
+          for (size_t n = 0; n < sum.size(); ++n) sum[n] += values[other][n];
+        for (size_t n = 0; n < sum.size(); ++n) next[v][n] = (values[v][n] + sum[n] / float(neighbours.size())) * 0.5F;
       }
     });
     std::swap(values, next);
@@ -181,7 +185,7 @@ FollowFigures FollowingMesh::follow(const SurfaceMesh& surface) {
     for (const size_t triangle : folded)
       for (const uint32_t v : mesh_.triangles[triangle]) {
         loose[v] = true;
-        for (uint32_t i = first_[v]; i < first_[v + 1]; ++i) loose[neighbours_[i]] = true;
+        for (const uint32_t other : neighboursOf(v)) loose[other] = true;
       }
     for (int i = 0; i < 4; ++i) {
       const std::vector<Vec3> means = averaged(mesh_.positions);

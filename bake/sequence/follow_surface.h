@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/figures.h"
@@ -42,6 +44,7 @@ class FollowingMesh {
  private:
   using Sums = std::array<float, 9>;  ///< xx yy zz yz xz xy of Σ n nᵀ, and Σ e n
 
+  std::span<const uint32_t> neighboursOf(size_t v) const;
   std::vector<Vec3> averaged(const std::vector<Vec3>& values) const;
   void smooth(std::vector<Sums>& values, int passes) const;
   std::vector<Vec3> motionTo(const std::vector<Vec3>& places, int smoothings) const;
